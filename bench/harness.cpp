@@ -1,0 +1,258 @@
+#include "bench/harness.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "bench/results.h"
+#include "engine/config.h"
+#include "engine/error.h"
+#include "engine/image.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Place {  // one scene at one size, and the configurations to measure there
+  fs::path scene;
+  Extent size;
+  std::vector<size_t> configs;
+};
+
+Row row_of(const Suite& suite, const BenchOptions& options, const Place& place, const SuiteConfig& config) {
+  Row row;
+  row.scene = place.scene;
+  describe_graph(row, config.graph);
+  row.set = config.set;
+  row.size = place.size;
+  row.camera = suite.camera;
+  row.reference_samples = suite.samples;
+  row.device = options.device;
+  std::error_code ignored;
+  const json identity = {row.scene.string(), fs::file_size(row.scene, ignored),
+                         row.graph_hash,     row.size.width,
+                         row.size.height,    row.camera,
+                         suite.repeat,       suite.instrumented,
+                         suite.samples,      row.device.name,
+                         row.device.driver,  version()};
+  row.key = canonical_hash(identity);
+  return row;
+}
+
+std::set<std::string> finished_keys(const fs::path& results) {
+  std::set<std::string> keys;
+  if (!fs::exists(results)) return keys;
+  for (const json& row : read_results(results))
+    if (row.value("status", "") == "ok") keys.insert(row.value("key", ""));
+  return keys;
+}
+
+class SuiteRun {
+ public:
+  SuiteRun(const Suite& suite, const BenchOptions& options, const StageMaker& make_stage)
+      : suite_(suite),
+        options_(options),
+        make_stage_(make_stage),
+        file_(results_file(options), options.resume) {
+    if (options.resume) finished_ = finished_keys(file_.path());
+    write_text(options.out / "suite.json", suite_as_run().dump(2) + "\n");
+    plan();
+  }
+
+  BenchResult run() {
+    result_.results = file_.path();
+    for (const Place& place : places_) run_place(place);
+    report("done");
+    return result_;
+  }
+
+ private:
+  static fs::path results_file(const BenchOptions& options) {
+    if (options.shards < 1 || options.shard < 1 || options.shard > options.shards)
+      fail(fmt::format("shard {}/{}: the first number must be in 1..{}", options.shard, options.shards,
+                       options.shards));
+    const fs::path file = options.out / "results.jsonl";
+    if (options.overwrite && !options.resume) fs::remove(file);
+    return file;
+  }
+
+  // The suite with its scenes found and its sizes spelled out, so that it can be run again from this folder.
+  json suite_as_run() const {
+    json scenes = json::array(), sizes = json::array();
+    for (const fs::path& scene : suite_.scenes) scenes.push_back(scene.string());
+    for (const Extent& size : suite_.sizes) sizes.push_back({size.width, size.height});
+    return {{"schema", 1},
+            {"scenes", scenes},
+            {"size", sizes},
+            {"camera", suite_.camera},
+            {"baseline", suite_.baseline},
+            {"graphs", suite_.graphs_json.empty() ? json(nullptr) : json::parse(suite_.graphs_json)},
+            {"warmup", suite_.warmup},
+            {"repeat", suite_.repeat},
+            {"instrumented", suite_.instrumented},
+            {"reference", {{"samples", suite_.samples}}}};
+  }
+
+  void plan() {
+    size_t index = 0;
+    for (const fs::path& scene : suite_.scenes) {
+      for (const Extent& size : suite_.sizes) {
+        Place place{scene, size, {}};
+        for (size_t i = 0; i < suite_.configs.size(); ++i) {
+          if (index++ % options_.shards != options_.shard - 1) continue;
+          if (finished_.count(row_of(suite_, options_, place, suite_.configs[i]).key) != 0)
+            ++result_.resumed;
+          else
+            place.configs.push_back(i);
+        }
+        total_ += place.configs.size();
+        if (!place.configs.empty()) places_.push_back(std::move(place));
+      }
+    }
+  }
+
+  void report(const std::string& note, double part = 0) const {
+    if (!options_.progress) return;
+    const double share = total_ == 0 ? 1.0 : (double(result_.measured) + part) / double(total_);
+    options_.progress(share, note);
+  }
+
+  void write(Row& row) {
+    if (row.status == "ok" && row.nonfinite > 0)
+      row.status = fmt::format("error: {} values of the output are not finite", row.nonfinite);
+    if (row.status != "ok") ++result_.failed;
+    file_.append(to_json(row));
+    ++result_.measured;
+  }
+
+  void run_place(const Place& place) {
+    const std::string name = place.scene.stem().string();
+    report(name + ": scene and reference");
+    std::unique_ptr<Stage> stage;
+    try {
+      stage = make_stage_(suite_, place.scene, place.size);
+    } catch (const std::exception& error) {
+      for (const size_t config : place.configs) {
+        Row row = row_of(suite_, options_, place, suite_.configs[config]);
+        row.status = std::string("error: ") + error.what();
+        write(row);
+      }
+      return;
+    }
+    for (const auto& [baseline, configs] : by_baseline(place)) {
+      const size_t step = std::max<size_t>(1, options_.max_alive - 1);
+      for (size_t first = 0; first < configs.size(); first += step) {
+        const size_t last = std::min(configs.size(), first + step);
+        run_chunk(place, *stage, baseline, {configs.begin() + long(first), configs.begin() + long(last)});
+      }
+    }
+  }
+
+  // Techniques with the same baseline are measured together. The baseline itself first, when it is to be
+  // measured.
+  std::map<size_t, std::vector<size_t>> by_baseline(const Place& place) const {
+    std::map<size_t, std::vector<size_t>> groups;
+    for (const size_t config : place.configs) {
+      std::vector<size_t>& group = groups[suite_.configs[config].baseline];
+      if (suite_.configs[config].baseline == config)
+        group.insert(group.begin(), config);
+      else
+        group.push_back(config);
+    }
+    return groups;
+  }
+
+  struct Entry {
+    size_t config = 0;
+    bool wanted = true;  // false: the baseline, there for the ratios only
+    Row row;
+    std::unique_ptr<Subject> subject;
+  };
+
+  Entry open(const Place& place, Stage& stage, size_t config, bool wanted) const {
+    Entry entry{config, wanted, row_of(suite_, options_, place, suite_.configs[config]), nullptr};
+    try {
+      entry.subject = stage.open(suite_.configs[config]);
+    } catch (const std::exception& error) {
+      entry.row.status = std::string("error: ") + error.what();
+    }
+    return entry;
+  }
+
+  void measure(std::vector<Entry>& entries, const std::string& scene) const {
+    std::vector<Subject*> subjects;
+    std::vector<Entry*> open_entries;
+    size_t wanted = 0;
+    for (Entry& entry : entries) {
+      wanted += entry.wanted ? 1 : 0;
+      if (!entry.subject) continue;
+      subjects.push_back(entry.subject.get());
+      open_entries.push_back(&entry);
+    }
+    const RoundSettings settings{suite_.warmup, suite_.repeat, suite_.instrumented};
+    const std::string note = fmt::format("{}: {} techniques in turn", scene, subjects.size());
+    std::vector<Samples> samples =
+        run_rounds(subjects, settings, [&](double part) { report(note, part * double(wanted)); });
+    for (size_t i = 0; i < open_entries.size(); ++i) {
+      if (!samples[i].error.empty()) open_entries[i]->row.status = "error: " + samples[i].error;
+      open_entries[i]->row.samples = std::move(samples[i]);
+    }
+  }
+
+  void run_chunk(const Place& place, Stage& stage, size_t baseline, const std::vector<size_t>& configs) {
+    const std::string scene = place.scene.stem().string();
+    std::vector<Entry> entries;
+    if (configs.front() != baseline) entries.push_back(open(place, stage, baseline, false));
+    for (const size_t config : configs) {
+      report(fmt::format("{}: {}", scene, label(suite_.configs[config])));
+      entries.push_back(open(place, stage, config, true));
+    }
+    measure(entries, scene);
+    const std::vector<double> base_ms = entries.front().row.samples.frame_ms();
+    for (Entry& entry : entries) {
+      if (!entry.wanted) continue;
+      finish(stage, baseline, base_ms, entry);
+      write(entry.row);
+      entry.subject.reset();
+    }
+  }
+
+  void finish(Stage& stage, size_t baseline, const std::vector<double>& base_ms, Entry& entry) const {
+    if (entry.row.status != "ok" || !entry.subject) return;
+    const std::vector<double> ratios = pair_ratios(entry.row.samples.frame_ms(), base_ms);
+    if (!ratios.empty()) entry.row.ratio = Ratio{label(suite_.configs[baseline]), summarise(ratios)};
+    try {
+      stage.finish(suite_.configs[entry.config], *entry.subject, entry.row);
+    } catch (const std::exception& error) {
+      entry.row.status = std::string("error: ") + error.what();
+    }
+  }
+
+  const Suite& suite_;
+  const BenchOptions& options_;
+  const StageMaker& make_stage_;
+  ResultsFile file_;
+  std::set<std::string> finished_;
+  std::vector<Place> places_;
+  size_t total_ = 0;
+  BenchResult result_;
+};
+
+}  // namespace
+
+std::string label(const SuiteConfig& config) {
+  std::string text = config.graph.name;
+  for (const auto& [name, value] : config.set) text += fmt::format(" {}={}", name, to_string(value));
+  return text;
+}
+
+BenchResult run_suite(const Suite& suite, const BenchOptions& options, const StageMaker& make_stage) {
+  return SuiteRun(suite, options, make_stage).run();
+}
+
+}  // namespace gnomon

@@ -1,0 +1,50 @@
+// The error of one rendered image against the ray-traced reference.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "engine/image.h"
+#include "engine/metrics.h"
+#include "engine/reference.h"
+#include "engine/scene.h"
+
+namespace gnomon {
+
+struct MeasuredError {
+  std::vector<ErrorMetrics> lights;  // one per light of the reference
+  // Over the lights: counts are summed, `max` is the largest, the rest are means over the lights with counted
+  // pixels (NaN when there are none, or when any light has non-finite results).
+  ErrorMetrics all;
+};
+
+// What acne needs beyond the two images. Without a tracer it is absent.
+struct AcneSettings {
+  const ReferenceTracer* tracer = nullptr;  // of the scene that the reference shows
+  Camera camera;                            // that the reference was traced with
+  uint32_t map_size = 1024;                 // texels a side of the shadow map
+  double texels = 2;                        // acne is further than this from any true edge
+};
+
+// `visibility` as Renderer::read gives it: channels "Y", "light1.Y", ... Error when a channel is missing or
+// the size differs.
+MeasuredError measure_visibility(const Image& visibility, const Reference& reference,
+                                 const AcneSettings& acne = {});
+
+// Share of counted pixels that are wrongly shadowed (result < 0.5, reference 1) further than acne.texels from
+// any true edge on the receiver's plane.
+double measure_acne(std::span<const float> result, const Reference& reference, uint32_t light,
+                    const AcneSettings& acne);
+
+// The image that perfect visibility gives: albedo / pi x sum over lights of irradiance x visibility, linear
+// RGB without ambient, black where there is no geometry. Lambert with the interpolated normal; spot falloff
+// and range as in KHR_lights_punctual. `camera`: that the reference was traced with.
+Image shade_reference(const Scene& scene, const Camera& camera, const Reference& reference);
+
+// The `error` object of a result row. Metrics that do not apply are left out; NaN becomes null.
+nlohmann::json to_json(const ErrorMetrics& metrics);
+// `all`, and with several lights the array `lights` beside.
+nlohmann::json to_json(const MeasuredError& error);
+
+}  // namespace gnomon

@@ -1,0 +1,42 @@
+// Measures several techniques in turn (A B C A B C ...), so that a slow spell of the machine hits all of
+// them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/renderer.h"
+
+namespace gnomon {
+
+// One technique under measurement. The Renderer in earnest; something simpler in tests.
+class Subject {
+ public:
+  virtual ~Subject() = default;
+  virtual FrameTiming render(TimingMode mode) = 0;
+};
+std::unique_ptr<Subject> subject_of(Renderer& renderer);  // refers to `renderer`
+
+struct RoundSettings {
+  uint32_t warmup = 2;        // frames before anything counts, for each technique and mode
+  uint32_t repeat = 5;        // rounds without time stamps: what a frame costs
+  uint32_t instrumented = 5;  // rounds of each mode with time stamps; 0: none
+};
+
+// What one technique's rounds gave; index = round. A technique that throws takes no further part.
+struct Samples {
+  std::vector<FrameTiming> plain, overlapped, isolated;
+  std::string error;  // empty: none
+  std::vector<double> frame_ms() const;
+  std::vector<double> record_ms() const;
+};
+
+// One Samples per subject, in order. `step` is called after each frame with the share done, 0..1; may be
+// empty.
+std::vector<Samples> run_rounds(const std::vector<Subject*>& subjects, const RoundSettings& settings,
+                                const std::function<void(double)>& step = {});
+
+}  // namespace gnomon

@@ -1,0 +1,18 @@
+// The harness' stage on a Vulkan device: renderers, and the error against the ray-traced reference.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "bench/harness.h"
+
+namespace gnomon {
+
+// Each Stage loads the scene and traces its reference, or reads it from `cache`. `progress`: of the tracing,
+// 0..1 and the scene's name; may be empty.
+StageMaker device_stages(std::shared_ptr<Device> device, std::filesystem::path cache,
+                         std::function<void(double, const std::string&)> progress = {});
+
+}  // namespace gnomon

@@ -1,0 +1,63 @@
+#include "bench/truth.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "bench/measure.h"
+#include "engine/error.h"
+#include "engine/metrics.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint32_t usual_map_size = 1024;  // texels
+
+const char* environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr && *value != '\0' ? value : nullptr;
+}
+
+uint32_t map_size_of(const Values& vars) {
+  const auto found = vars.find("shadow_map");
+  if (found == vars.end()) return usual_map_size;
+  const auto* texels = std::get_if<std::int64_t>(&found->second);
+  return texels != nullptr && *texels > 0 ? static_cast<uint32_t>(*texels) : usual_map_size;
+}
+
+}  // namespace
+
+fs::path cache_folder() {
+  if (const char* given = environment("GNOMON_CACHE")) return given;
+  if (const char* given = environment("XDG_CACHE_HOME")) return fs::path(given) / "gnomon";
+  if (const char* home = environment("HOME")) return fs::path(home) / ".cache" / "gnomon";
+  return fs::temp_directory_path() / "gnomon-cache";
+}
+
+Image rgb_of(const Image& color) {
+  Image rgb(color.width, color.height, {"R", "G", "B"});
+  for (size_t c = 0; c < 3; ++c) {
+    const auto from = color.plane(rgb.channels[c]);
+    std::copy(from.begin(), from.end(), rgb.plane(c).begin());
+  }
+  return rgb;
+}
+
+Truth::Truth(std::shared_ptr<const Scene> scene, const ReferenceSettings& settings, const fs::path& cache)
+    : scene_(std::move(scene)),
+      camera_(scene_->cameras.at(settings.camera)),
+      reference_(cached_reference(*scene_, settings, cache)),
+      tracer_(*scene_) {}
+
+std::string Truth::error_json(const Image& visibility, const Image* color, const Values& vars) const {
+  MeasuredError error = measure_visibility(visibility, reference_, {&tracer_, camera_, map_size_of(vars), 2});
+  if (color != nullptr) {
+    if (shaded_.width == 0) shaded_ = shade_reference(*scene_, camera_, reference_);
+    error.all.flip = flip(rgb_of(*color), shaded_);
+  }
+  return to_json(error).dump();
+}
+
+}  // namespace gnomon

@@ -1,0 +1,42 @@
+// A scene's ray-traced reference at one size, and the error of images against it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "engine/image.h"
+#include "engine/params.h"
+#include "engine/reference.h"
+#include "engine/scene.h"
+
+namespace gnomon {
+
+// Traced references are kept here: $GNOMON_CACHE, else $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon.
+std::filesystem::path cache_folder();
+
+// The channels R, G, B of a shaded image; Error when one is missing.
+Image rgb_of(const Image& color);
+
+class Truth {
+ public:
+  // Traces, or reads from `cache`.
+  Truth(std::shared_ptr<const Scene> scene, const ReferenceSettings& settings,
+        const std::filesystem::path& cache);
+
+  // The `error` object of a result row, as JSON text. `color`: the shaded image, for FLIP; may be nullptr.
+  // `vars`: of the graph; `shadow_map` is the map's side in texels that acne is judged by (1024 when there is
+  // none).
+  std::string error_json(const Image& visibility, const Image* color, const Values& vars) const;
+  const Reference& reference() const { return reference_; }
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  Camera camera_;
+  Reference reference_;
+  ReferenceTracer tracer_;
+  mutable Image shaded_;  // made when first asked for
+};
+
+}  // namespace gnomon

@@ -1,0 +1,12 @@
+# Debian 12's packages; tools/install-dependencies names them.
+find_package(Threads REQUIRED)
+find_package(glm REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_package(TinyGLTF REQUIRED)
+find_package(embree REQUIRED)
+find_package(glslang REQUIRED)
+find_package(Vulkan REQUIRED)

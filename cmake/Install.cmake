@@ -1,0 +1,23 @@
+# find_package(gnomon) then gives gnomon::engine and gnomon::passes; shaders, graphs and scenes go to share/gnomon.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gnomon)
+install(TARGETS gnomon_engine gnomon_passes gnomon_bench EXPORT gnomonTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/gnomon)
+install(TARGETS gnomon RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+set_target_properties(gnomon_engine PROPERTIES EXPORT_NAME engine)
+set_target_properties(gnomon_passes PROPERTIES EXPORT_NAME passes)
+set_target_properties(gnomon_bench PROPERTIES EXPORT_NAME bench)
+install(EXPORT gnomonTargets NAMESPACE gnomon:: DESTINATION ${package_dir})
+
+install(DIRECTORY engine bench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gnomon FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY shaders assets DESTINATION ${CMAKE_INSTALL_DATADIR}/gnomon)
+install(DIRECTORY bench/suites DESTINATION ${CMAKE_INSTALL_DATADIR}/gnomon/bench)
+
+configure_package_config_file(cmake/gnomonConfig.cmake.in ${PROJECT_BINARY_DIR}/gnomonConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/gnomonConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/gnomonConfig.cmake ${PROJECT_BINARY_DIR}/gnomonConfigVersion.cmake
+        DESTINATION ${package_dir})

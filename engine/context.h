@@ -1,0 +1,146 @@
+// What a pass is given: Environment to make its pipelines once, Context to record its commands each time.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/compile.h"
+#include "engine/gpu_scene.h"
+#include "engine/handle.h"
+#include "engine/pipeline.h"
+
+namespace gnomon {
+
+// A resource of the plan on the device.
+struct Physical {
+  GpuImage image;
+  Buffer buffer;
+};
+
+// One node's own state on the device: layouts, descriptor set and parameter block.
+struct NodeState {
+  Handle<VkDescriptorSetLayout> set_layout;
+  Handle<VkPipelineLayout> pipeline_layout;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  Buffer parameters;
+  std::string preamble;
+};
+
+class Environment {
+ public:
+  Environment(std::shared_ptr<Device> device, const GpuScene& scene, const RenderSettings& settings,
+              const PlanNode& node, const NodeState& state, const std::vector<Physical>& resources,
+              VkPipelineCache cache);
+
+  const Scene& scene() const { return scene_.scene(); }
+  const GpuScene& gpu_scene() const { return scene_; }
+  const RenderSettings& settings() const { return settings_; }
+  const Params& params() const { return node_.params; }
+  const Device& device() const { return *device_; }
+  ImageShape shape(const std::string& port) const;
+
+  // Pipelines of this pass: its bindings, its parameter block and flags are in the preamble of every shader.
+  Pipeline compute(const std::string& file, Defines defines = {}) const;
+  Pipeline raster(RasterState state) const;
+
+  // Buffers that live as long as the pass, for what only prepare() knows the size or the content of.
+  Buffer buffer(uint64_t bytes, VkBufferUsageFlags usage) const;
+  Buffer upload(std::span<const std::byte> bytes, VkBufferUsageFlags usage) const;
+  // Shaders see `buffer`, which must outlive the pass' use, instead of the buffer port's own memory. Barriers are the
+  // pass' business.
+  void attach(const std::string& port, const Buffer& buffer) const;
+
+  void fact(const std::string& name, double value) { facts_[node_.id + "." + name] = value; }  // for run.json
+  void warn(std::string sentence) { warnings_.push_back(node_.id + ": " + std::move(sentence)); }
+  const std::map<std::string, double>& facts() const { return facts_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  Defines with_parameters(Defines defines) const;
+  std::shared_ptr<Device> device_;
+  const GpuScene& scene_;
+  const RenderSettings& settings_;
+  const PlanNode& node_;
+  const NodeState& state_;
+  const std::vector<Physical>& resources_;
+  VkPipelineCache cache_;
+  std::map<std::string, double> facts_;
+  std::vector<std::string> warnings_;
+};
+
+struct ColorTarget {
+  std::string port;
+  std::optional<std::array<float, 4>> clear;  // absent: keep what is there
+};
+struct DepthTarget {
+  std::string port;
+  std::optional<float> clear;
+  uint32_t clear_stencil = 0;
+};
+struct Targets {
+  std::vector<ColorTarget> colors;
+  std::optional<DepthTarget> depth;
+  // One layer of arrays (of an image with fewer, the last); absent: all, chosen by gl_Layer.
+  std::optional<uint32_t> layer;
+};
+
+enum class Cull {
+  material,  // glTF: back faces, unless the material is double-sided
+  none,
+  front      // front faces, unless the material is double-sided
+};
+struct ScenePipelines {
+  Pipeline opaque, masked;  // masked: alpha-masked materials
+};
+
+class Context {
+ public:
+  Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node, const NodeState& state,
+          const std::vector<Physical>& resources, uint32_t iteration);
+
+  VkCommandBuffer commands() const { return commands_; }
+  const Params& params() const { return node_.params; }
+  const GpuScene& scene() const { return scene_; }
+  uint32_t iteration() const { return iteration_; }  // of the enclosing loop, from 0
+  ImageShape shape(const std::string& port) const;
+  const Buffer& buffer(const std::string& port) const;
+
+  void bind(const Pipeline& pipeline);
+  template <class T>
+  void push(const Pipeline& pipeline, const T& values, uint32_t offset = 0) {
+    vkCmdPushConstants(commands_, pipeline.layout, VK_SHADER_STAGE_ALL, offset, sizeof(T), &values);
+  }
+
+  // Compute. dispatch_over: one invocation per pixel and layer, workgroups of 8x8x1.
+  void dispatch(const Pipeline& pipeline, uint32_t x, uint32_t y = 1, uint32_t z = 1);
+  void dispatch_over(const Pipeline& pipeline, Extent pixels, uint32_t layers = 1);
+  void dispatch_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset = 0);
+  void fill(const std::string& buffer_port, uint32_t value, uint64_t offset = 0, uint64_t size = VK_WHOLE_SIZE);
+  // Makes everything this pass wrote so far visible to its next command.
+  void own_barrier();
+
+  // Raster. `body` records draws.
+  void render(const Targets& targets, const std::function<void()>& body);
+  void draw_scene(const ScenePipelines& pipelines, Cull cull, uint32_t layers = 1);
+  void draw(const Draw& draw, uint32_t instances = 1);  // after bind() and bind_geometry()
+  void bind_geometry();
+  void set_cull(VkCullModeFlags mode);
+  void draw_fullscreen(const Pipeline& pipeline);
+
+ private:
+  const Physical& physical(const std::string& port) const;
+  void set_area(Extent extent);
+  VkCommandBuffer commands_;
+  const GpuScene& scene_;
+  const PlanNode& node_;
+  const NodeState& state_;
+  const std::vector<Physical>& resources_;
+  uint32_t iteration_;
+};
+
+}  // namespace gnomon

@@ -1,0 +1,220 @@
+#include "engine/gpu_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/type_precision.hpp>
+
+#include "engine/error.h"
+
+namespace gnomon {
+namespace {
+
+template <class T>
+std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+  return std::as_bytes(std::span(values));
+}
+
+template <class T>
+void write(const Buffer& buffer, const std::vector<T>& values) {
+  std::memcpy(buffer.bytes().data(), values.data(), values.size() * sizeof(T));
+}
+
+uint16_t unorm16(float value) { return uint16_t(std::lround(std::clamp(value, 0.0f, 1.0f) * 65535.0f)); }
+
+GpuScene::Attributes attributes_at(const Mesh& mesh, size_t i) {
+  GpuScene::Attributes a{};
+  const glm::i16vec2 normal = octahedral_snorm16(mesh.normals[i]);
+  a.normal[0] = normal.x, a.normal[1] = normal.y;
+  a.uv[0] = mesh.uvs[i].x, a.uv[1] = mesh.uvs[i].y;
+  const glm::vec4 color = mesh.colors.empty() ? glm::vec4(1.0f) : mesh.colors[i];
+  for (int c = 0; c < 4; ++c) a.color[c] = unorm16(color[c]);
+  return a;
+}
+
+// Geometric normal of a triangle, in double: slivers keep theirs.
+glm::vec3 triangle_normal(const Mesh& mesh, size_t triangle) {
+  const uint32_t* i = &mesh.indices[3 * triangle];
+  const glm::dvec3 a = mesh.positions[i[0]], b = mesh.positions[i[1]], c = mesh.positions[i[2]];
+  return glm::normalize(glm::cross(b - a, c - a));
+}
+
+Handle<VkDescriptorSetLayout> make_layout(const std::shared_ptr<Device>& device,
+                                          const std::vector<VkDescriptorSetLayoutBinding>& bindings) {
+  VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  info.bindingCount = uint32_t(bindings.size());
+  info.pBindings = bindings.data();
+  return create(device, vkCreateDescriptorSetLayout, info, vkDestroyDescriptorSetLayout, "vkCreateDescriptorSetLayout");
+}
+
+void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to) {
+  VkImageMemoryBarrier2 b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+  b.srcStageMask = b.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  b.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  b.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  b.oldLayout = from, b.newLayout = to;
+  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  b.image = image;
+  b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  info.imageMemoryBarrierCount = 1;
+  info.pImageMemoryBarriers = &b;
+  vkCmdPipelineBarrier2(commands, &info);
+}
+
+GpuImage upload_texture(const std::shared_ptr<Device>& device, const Texture& texture) {
+  GpuImage image(device, {{texture.width, texture.height}, 1, 1, VK_FORMAT_R8G8B8A8_SRGB},
+                 VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  Buffer staging(device, texture.rgba.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Place::host);
+  std::memcpy(staging.bytes().data(), texture.rgba.data(), texture.rgba.size());
+  OneShot once(device);
+  barrier(once.commands(), image.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  VkBufferImageCopy copy{};
+  copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  copy.imageExtent = {texture.width, texture.height, 1};
+  vkCmdCopyBufferToImage(once.commands(), staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                         &copy);
+  barrier(once.commands(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  once.submit_and_wait();
+  return image;
+}
+
+Handle<VkSampler> make_sampler(const std::shared_ptr<Device>& device, const Texture& texture) {
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = texture.nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+  info.addressModeU = texture.repeat_u ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.addressModeV = texture.repeat_v ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  return create(device, vkCreateSampler, info, vkDestroySampler, "vkCreateSampler");
+}
+
+}  // namespace
+
+glm::i16vec2 octahedral_snorm16(const glm::vec3& unit) {
+  const float sum = std::abs(unit.x) + std::abs(unit.y) + std::abs(unit.z);
+  glm::vec2 p(unit.x / sum, unit.y / sum);
+  if (unit.z < 0) {
+    const glm::vec2 fold((1 - std::abs(p.y)) * (p.x >= 0 ? 1 : -1), (1 - std::abs(p.x)) * (p.y >= 0 ? 1 : -1));
+    p = fold;
+  }
+  return {int16_t(std::lround(p.x * 32767.0f)), int16_t(std::lround(p.y * 32767.0f))};
+}
+
+GpuScene::GpuScene(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene)
+    : device_(std::move(device)), scene_(std::move(scene)), faces_(light_faces(*scene_, kFaceBorderPart, 1)) {
+  upload_geometry();
+  upload_textures();
+  make_frame_set();
+  make_material_sets();
+}
+
+void GpuScene::upload_geometry() {
+  std::vector<glm::vec3> positions;
+  std::vector<Attributes> attributes;
+  std::vector<uint32_t> indices;
+  std::vector<glm::i16vec2> normals;
+  for (const Mesh& mesh : scene_->meshes) {
+    first_vertex_.push_back(uint32_t(positions.size()));
+    first_triangle_.push_back(uint32_t(normals.size()));
+    positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (size_t i = 0; i < mesh.positions.size(); ++i) attributes.push_back(attributes_at(mesh, i));
+    indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
+    for (size_t t = 0; t < mesh.triangles(); ++t) normals.push_back(octahedral_snorm16(triangle_normal(mesh, t)));
+  }
+  for (uint32_t i = 0; i < scene_->instances.size(); ++i) {
+    const Instance& instance = scene_->instances[i];
+    const Mesh& mesh = scene_->meshes[instance.mesh];
+    const Material& material = scene_->materials[mesh.material];
+    draws_.push_back({3 * first_triangle_[instance.mesh], uint32_t(mesh.indices.size()),
+                      int32_t(first_vertex_[instance.mesh]), i, mesh.material, material.double_sided,
+                      material.alpha_masked, glm::determinant(glm::dmat3(instance.world_from_object)) < 0,
+                      mesh.watertight});
+  }
+  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  positions_ = upload_buffer(device_, bytes_of(positions), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kStorage);
+  attributes_ = upload_buffer(device_, bytes_of(attributes), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  indices_ = upload_buffer(device_, bytes_of(indices), VK_BUFFER_USAGE_INDEX_BUFFER_BIT | kStorage);
+  triangle_normals_ = upload_buffer(device_, bytes_of(normals), kStorage);
+  materials_ = upload_buffer(device_, bytes_of(material_data(*scene_)), kStorage);
+}
+
+void GpuScene::upload_textures() {
+  for (const Texture& texture : scene_->textures) {
+    textures_.push_back(upload_texture(device_, texture));
+    samplers_.push_back(make_sampler(device_, texture));
+  }
+  Texture white;
+  white.rgba = {255, 255, 255, 255};
+  textures_.push_back(upload_texture(device_, white));
+  samplers_.push_back(make_sampler(device_, white));
+}
+
+void GpuScene::make_frame_set() {
+  const auto host = [&](size_t count, size_t stride, VkBufferUsageFlags usage) {
+    return Buffer(device_, std::max<uint64_t>(count * stride, 16), usage, Place::host);
+  };
+  frame_buffer_ = host(1, sizeof(FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  lights_ = host(scene_->lights.size(), sizeof(LightData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  faces_buffer_ = host(faces_.size(), sizeof(FaceData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  instances_ = host(scene_->instances.size(), sizeof(InstanceData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+
+  const Buffer* buffers[] = {&frame_buffer_, &lights_,           &faces_buffer_, &instances_,
+                             &materials_,    &triangle_normals_, &positions_,    &indices_};
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (uint32_t i = 0; i < std::size(buffers); ++i)
+    bindings.push_back({i, i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+                        VK_SHADER_STAGE_ALL, nullptr});
+  frame_layout_ = make_layout(device_, bindings);
+  material_layout_ = make_layout(device_, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+                                                      VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}});
+  const uint32_t materials = uint32_t(scene_->materials.size());
+  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+                                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 16},
+                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, materials}};
+  VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  pool.maxSets = 1 + materials;
+  pool.poolSizeCount = uint32_t(std::size(sizes));
+  pool.pPoolSizes = sizes;
+  pool_ = create(device_, vkCreateDescriptorPool, pool, vkDestroyDescriptorPool, "vkCreateDescriptorPool");
+
+  const VkDescriptorSetLayout layout = frame_layout();
+  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool_.get(), 1, &layout};
+  check(vkAllocateDescriptorSets(device_->handle(), &allocate, &frame_set_), "vkAllocateDescriptorSets");
+  for (uint32_t i = 0; i < std::size(buffers); ++i) {
+    VkDescriptorBufferInfo info{buffers[i]->handle(), 0, VK_WHOLE_SIZE};
+    VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, frame_set_, i, 0, 1};
+    w.descriptorType = bindings[i].descriptorType;
+    w.pBufferInfo = &info;
+    vkUpdateDescriptorSets(device_->handle(), 1, &w, 0, nullptr);
+  }
+}
+
+void GpuScene::make_material_sets() {
+  for (const Material& material : scene_->materials) {
+    const uint32_t texture = material.base_color_texture.value_or(uint32_t(textures_.size() - 1));
+    const VkDescriptorSetLayout layout = material_layout();
+    VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool_.get(), 1, &layout};
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set), "vkAllocateDescriptorSets");
+    VkDescriptorImageInfo info{samplers_[texture].get(), textures_[texture].sampled_view(false),
+                               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, 0, 0, 1};
+    w.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    w.pImageInfo = &info;
+    vkUpdateDescriptorSets(device_->handle(), 1, &w, 0, nullptr);
+    material_sets_.push_back(set);
+  }
+}
+
+void GpuScene::update(uint32_t camera_index, uint32_t width, uint32_t height, bool reversed_z, uint32_t frame_index) {
+  const Camera& camera = scene_->cameras.at(camera_index);
+  const glm::dvec3 eye(camera.world_from_camera[3]);
+  frame_ = frame_data(camera, width, height, reversed_z, uint32_t(scene_->lights.size()), uint32_t(faces_.size()),
+                      frame_index);
+  std::memcpy(frame_buffer_.bytes().data(), &frame_, sizeof(frame_));
+  write(lights_, light_data(*scene_, faces_, eye));
+  write(faces_buffer_, face_data(faces_, eye));
+  write(instances_, instance_data(*scene_, first_triangle_, eye));
+}
+
+}  // namespace gnomon

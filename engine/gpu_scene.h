@@ -1,0 +1,76 @@
+// The scene on the device: geometry, materials, and the per-frame data that every shader sees (set 0).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/frame_data.h"
+#include "engine/handle.h"
+#include "engine/resources.h"
+#include "engine/scene.h"
+
+namespace gnomon {
+
+struct Draw {  // one instance of one mesh
+  uint32_t first_index, index_count;
+  int32_t vertex_offset;
+  uint32_t instance, material;
+  bool double_sided, alpha_masked, mirrored, watertight;
+};
+
+class GpuScene {
+ public:
+  GpuScene(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene);
+  GpuScene(const GpuScene&) = delete;
+  GpuScene& operator=(const GpuScene&) = delete;
+
+  const Scene& scene() const { return *scene_; }
+  const std::vector<Draw>& draws() const { return draws_; }
+  const std::vector<LightFace>& faces() const { return faces_; }
+  const FrameData& frame() const { return frame_; }
+
+  VkDescriptorSetLayout frame_layout() const { return frame_layout_.get(); }
+  VkDescriptorSetLayout material_layout() const { return material_layout_.get(); }
+  VkDescriptorSet frame_set() const { return frame_set_; }
+  VkDescriptorSet material_set(uint32_t material) const { return material_sets_[material]; }
+  VkBuffer positions() const { return positions_.handle(); }    // binding 0: float x, y, z
+  VkBuffer attributes() const { return attributes_.handle(); }  // binding 1: normal, uv, colour (see Attributes)
+  VkBuffer indices() const { return indices_.handle(); }        // uint32
+  uint32_t first_vertex(uint32_t mesh) const { return first_vertex_[mesh]; }
+  uint32_t first_triangle(uint32_t mesh) const { return first_triangle_[mesh]; }
+
+  // Writes the frame's data; the device must not be reading it.
+  void update(uint32_t camera, uint32_t width, uint32_t height, bool reversed_z, uint32_t frame_index);
+
+  struct Attributes {       // per vertex, 20 bytes
+    int16_t normal[2];      // octahedral, snorm
+    float uv[2];
+    uint16_t color[4];      // linear, unorm
+  };
+
+ private:
+  void upload_geometry();
+  void upload_textures();
+  void make_frame_set();
+  void make_material_sets();
+
+  std::shared_ptr<Device> device_;
+  std::shared_ptr<const Scene> scene_;
+  std::vector<Draw> draws_;
+  std::vector<LightFace> faces_;
+  std::vector<uint32_t> first_vertex_, first_triangle_;
+  FrameData frame_{};
+  Buffer positions_, attributes_, indices_, triangle_normals_, materials_;
+  Buffer frame_buffer_, lights_, faces_buffer_, instances_;  // host-visible
+  std::vector<GpuImage> textures_;                           // last one: plain white
+  std::vector<Handle<VkSampler>> samplers_;
+  Handle<VkDescriptorPool> pool_;
+  Handle<VkDescriptorSetLayout> frame_layout_, material_layout_;
+  VkDescriptorSet frame_set_ = VK_NULL_HANDLE;
+  std::vector<VkDescriptorSet> material_sets_;
+};
+
+// Octahedral map of a unit vector to [-1, 1]^2 (Cigolle et al. 2014), as snorm16.
+glm::i16vec2 octahedral_snorm16(const glm::vec3& unit);
+
+}  // namespace gnomon

@@ -1,0 +1,91 @@
+// Runs one graph on one scene on one device, frame by frame, and measures it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/graph.h"
+#include "engine/image.h"
+#include "engine/scene.h"
+
+namespace gnomon {
+
+class Device;  // engine/device.h
+
+struct DeviceInfo {
+  std::string name, driver;
+  bool is_cpu = false;
+};
+struct DeviceOptions {
+  std::string name_part;      // part of the device's name, any case; empty: a GPU if there is one, else lavapipe
+  bool validation = false;    // validation and synchronisation-validation layers; see Device::validation_messages
+};
+std::shared_ptr<Device> open_device(const DeviceOptions& options);   // Error: no Vulkan device, no such name
+std::vector<DeviceInfo> list_devices();
+const DeviceInfo& device_info(const Device& device);
+const std::vector<std::string>& validation_messages(const Device& device);
+
+struct RenderSettings {
+  uint32_t width = 1280, height = 720;   // pixels
+  uint32_t camera = 0;                   // index into Scene::cameras
+  bool reversed_z = true;                // camera depth: reversed (1 near, 0 at infinity) or standard
+  bool alias = true;                     // transient memory aliasing
+  bool keep_all = false;                 // leave nothing out
+  std::vector<std::string> captures;     // "node.port" besides the outputs
+};
+
+enum class TimingMode {
+  none,        // no timestamps at all: what a frame costs
+  overlapped,  // stamps at pass boundaries, barriers as planned
+  isolated     // full barrier between passes: attribution
+};
+
+struct PassTiming {
+  std::string id, type;
+  uint32_t iteration = 0;     // of its loop; 0 outside loops
+  double gpu_ms = 0;          // stamp to stamp, barriers included: passes add up to their segment
+  double cpu_ms = 0;          // recording
+  double host_wait_ms = 0;    // host waiting for this pass' segment (host-read edges)
+};
+struct FrameTiming {
+  double frame_ms = 0;        // submit to completion, wall clock, recording included
+  double record_ms = 0;       // CPU recording of the whole frame
+  double gpu_ms = 0;          // first to last stamp, summed over segments; 0 in mode none
+  std::vector<PassTiming> passes;
+};
+
+struct MemoryUse { uint64_t peak_bytes = 0, transient_bytes = 0, transient_bytes_without_aliasing = 0; };
+struct LeftOutPass { std::string pass, reason; };
+
+class Renderer {
+ public:
+  // Compiles the graph, its shaders and uploads the scene. Error for what cannot run here.
+  Renderer(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, const Graph& graph,
+           const RenderSettings& settings);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+
+  FrameTiming render(TimingMode mode);      // one frame; returns when it is done
+  // A graph output ("visibility", "color") or captured port after render(). Channels: one image channel per
+  // component and layer: "Y" for layer 0 of a one-channel image, "light1.Y", ...; RGB(A) as "R","G","B"(,"A").
+  Image read(const std::string& output);
+
+  MemoryUse memory() const;
+  std::vector<LeftOutPass> left_out() const;
+  std::vector<std::string> warnings() const;               // passes' own ("open mesh 'leaves' in shadow_volumes")
+  std::map<std::string, double> facts() const;             // passes' own figures: "shade.bias_world", ...
+  std::string plan_text() const;
+  // Names of passes in execution order.
+  std::vector<std::string> passes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gnomon

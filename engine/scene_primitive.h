@@ -1,0 +1,21 @@
+// glTF primitives, materials and textures as the scene's. Internal to the scene loader.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/gltf_file.h"
+#include "engine/scene.h"
+
+namespace gnomon {
+
+// One primitive as a clean mesh; nothing when it holds no triangles (points, lines, all dropped). Counts what
+// it drops.
+std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh, size_t primitive,
+                                   SceneWarnings& warnings);
+
+// All materials, then the default one (glTF 2.0, 3.9.6), which primitives without a material use; and the
+// textures that the materials need.
+void read_materials(const GltfFile& gltf, Scene& scene);
+
+}  // namespace gnomon

@@ -1,0 +1,53 @@
+#include "engine/context.h"
+#include "passes/receiver_ports.h"
+
+namespace gnomon {
+namespace {
+
+class Revectorize : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.summary("Tests every camera pixel against the shadow map and revectorizes the shadow's silhouette.");
+    d.cite("Macedo 2018, eq. 3.1-3.9 and 4.1-4.2");
+    const ImageShape visibility = declare_receiver(d);
+    d.choice("mode", "non_conservative", {"conservative", "non_conservative", "filtered"},
+             "visibility function: (3.6), (3.9) or (4.2)");
+    d.choice("walk", "tangent_plane", {"tangent_plane", "kept_lowering"},
+             "depth along the walk: the receiver's tangent plane at each texel, or the remedy of section 3.1.3");
+    d.integer("max_size", 16, 1, 1024, "texels", "longest walk along a silhouette, in each direction");
+    d.number("epsilon", 1e-3, 0, 1, "depth range", "kept_lowering: how near the map is lowered for, and by how much");
+    d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
+    const uint64_t pixels = uint64_t(visibility.extent.width) * visibility.extent.height * visibility.layers;
+    d.transient_buffer("silhouette", Access::storage_read | Access::storage_write, {pixels, 4, "uint"},
+                       "pixels on the silhouette, as (light * height + y) * width + x");
+    d.transient_buffer("arguments",
+                       Access::storage_read | Access::storage_write | Access::indirect | Access::transfer_write,
+                       {4, 4, "uint"}, "workgroups of the walk (x, y, z) and the number of listed pixels");
+  }
+
+  void prepare(Environment& e) override {
+    find_ = e.compute("revectorize_find.glsl");
+    walk_ = e.compute("revectorize_walk.glsl");
+    report_bias(e);
+  }
+
+  void record(Context& c) override {
+    constexpr uint64_t kWord = 4;  // bytes
+    c.fill("arguments", 0, 0, kWord);
+    c.fill("arguments", 1, kWord, 2 * kWord);
+    c.fill("arguments", 0, 3 * kWord, kWord);
+    c.own_barrier();
+    const ImageShape shape = c.shape("visibility");
+    c.dispatch_over(find_, shape.extent, shape.layers);
+    c.own_barrier();
+    c.dispatch_indirect(walk_, "arguments");
+  }
+
+ private:
+  Pipeline find_, walk_;
+};
+
+GNOMON_PASS("revectorize", Revectorize);
+
+}  // namespace
+}  // namespace gnomon

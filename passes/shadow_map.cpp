@@ -1,0 +1,79 @@
+#include "engine/context.h"
+#include "passes/receiver_ports.h"
+
+namespace gnomon {
+namespace {
+
+class ShadowMap : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.kind(PassKind::mixed);
+    d.summary("Renders the scene's depth from every light: one face a spot or directional light, six a point light.");
+    d.cite("Williams 1978; depth encodings: Rzeczkowski 2024, eq. 3.5-3.8; midpoint: Woo 1992");
+    const uint32_t size = uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each face"));
+    declare_encoding(d);
+    const bool midpoint = declare_bias(d) == "midpoint";
+    const ImageShape faces{{size, size}, d.setting().map_faces, 1, VK_FORMAT_D32_SFLOAT};
+    ImageShape merged = faces;
+    merged.format = VK_FORMAT_R32_SFLOAT;
+    if (midpoint) {
+      d.output("depth", Access::storage_write, true, merged, "depth halfway between the first two surfaces");
+      d.transient("first", Access::depth | Access::sampled, true, faces, "depth of the first surface");
+      d.transient("second", Access::depth | Access::sampled, true, faces, "depth of the second surface");
+    } else {
+      d.output("depth", Access::depth, true, faces, "depth of the first surface; 1 where there is none");
+    }
+  }
+
+  void prepare(Environment& e) override {
+    const bool linear = e.params().choice("encoding") == "linear";
+    const std::string& bias = e.params().choice("bias");
+    midpoint_ = bias == "midpoint";
+    cull_ = bias == "back_face" ? Cull::front : Cull::none;
+    pipelines_ = make(e, linear, false);
+    if (!midpoint_) return;
+    peel_ = make(e, linear, true);
+    merge_ = e.compute("shadow_map_midpoint.glsl");
+  }
+
+  void record(Context& c) override {
+    const uint32_t layers = c.shape("depth").layers;
+    const char* target = midpoint_ ? "first" : "depth";
+    c.render({{}, DepthTarget{target, 1.0f}, {}}, [&] { c.draw_scene(pipelines_, cull_, layers); });
+    if (!midpoint_) return;
+    c.own_barrier();
+    c.render({{}, DepthTarget{"second", 1.0f}, {}}, [&] { c.draw_scene(peel_, cull_, layers); });
+    c.own_barrier();
+    c.dispatch_over(merge_, c.shape("depth").extent, layers);
+  }
+
+ private:
+  // A fragment shader only where depth alone does not do.
+  static ScenePipelines make(Environment& e, bool linear, bool peel) {
+    RasterState state;
+    state.vertex = "shadow_map.vert.glsl";
+    state.depth = VK_FORMAT_D32_SFLOAT;
+    state.depth_test = state.depth_write = true;
+    state.depth_compare = VK_COMPARE_OP_LESS;
+    if (linear) state.defines.emplace_back("LINEAR_DEPTH", "1");
+    if (peel) state.defines.emplace_back("PEEL", "1");
+    if (linear || peel) state.fragment = "shadow_map.glsl";
+    ScenePipelines pipelines;
+    pipelines.opaque = e.raster(state);
+    state.defines.emplace_back("MASKED", "1");
+    state.fragment = "shadow_map.glsl";
+    state.layout = VertexLayout::full;
+    pipelines.masked = e.raster(state);
+    return pipelines;
+  }
+
+  ScenePipelines pipelines_, peel_;
+  Pipeline merge_;
+  Cull cull_ = Cull::none;
+  bool midpoint_ = false;
+};
+
+GNOMON_PASS("shadow_map", ShadowMap);
+
+}  // namespace
+}  // namespace gnomon

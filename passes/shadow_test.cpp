@@ -1,0 +1,31 @@
+#include "engine/context.h"
+#include "passes/receiver_ports.h"
+
+namespace gnomon {
+namespace {
+
+class ShadowTest : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.summary("Tests every camera pixel against the shadow map.");
+    d.cite("Williams 1978; Macedo 2018, eq. 3.2");
+    const ImageShape visibility = declare_receiver(d);
+    d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
+  }
+  void prepare(Environment& e) override {
+    pipeline_ = e.compute("shadow_test.glsl");
+    report_bias(e);
+  }
+  void record(Context& c) override {
+    const ImageShape shape = c.shape("visibility");
+    c.dispatch_over(pipeline_, shape.extent, shape.layers);
+  }
+
+ private:
+  Pipeline pipeline_;
+};
+
+GNOMON_PASS("shadow_test", ShadowTest);
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,73 @@
+// From a camera pixel to its receiver in a light's shadow map: what all shadow-map techniques begin with.
+// Uses the ports `depth`, `geometric` (G-buffer) and `shadow_map`, and the parameters of passes/receiver_ports.h.
+#include "frame.glsl"
+#include "lib/octahedral.glsl"
+#include "lib/receiver_plane.glsl"
+
+const int PIXEL_BACKGROUND = 0;  // no geometry: lit
+const int PIXEL_AWAY = 1;        // the geometric normal faces away from the light: in shadow, whatever the map says
+const int PIXEL_OUTSIDE = 2;     // outside the map: lit, the light's own falloff decides
+const int PIXEL_INSIDE = 3;      // the map decides
+
+struct Query {
+  int face;         // layer of the map
+  vec2 position;    // in the map, texels
+  Receiver plane;
+};
+
+float map_size() { return float(textureSize(shadow_map, 0).x); }
+
+// World units, along the face's axis.
+float bias_world(float texel_size, float slope) {
+#if BIAS == BIAS_NONE
+  return 0.0;
+#elif BIAS == BIAS_SLOPE_SCALED || BIAS == BIAS_RECEIVER_PLANE || BIAS == BIAS_BACK_FACE || BIAS == BIAS_MIDPOINT
+  return texel_size * (params.bias_constant + params.bias_slope * slope);
+#else
+  return texel_size * params.bias_constant;
+#endif
+}
+
+int make_query(ivec2 pixel, uint light_index, out Query query) {
+  float device_depth = depth_at(pixel).x;
+  vec3 n = octahedral_decode(geometric_at(pixel).xy);
+  vec3 p = relative_position(pixel, device_depth);
+  Light light = lights[light_index];
+  float light_distance;
+  vec3 l = to_light(light, p, light_distance);
+  float facing = dot(n, l);
+  query.face = int(face_of(light, p));
+  LightFace face = faces[query.face];
+  vec3 q = face_space(face, vec4(p, 1.0));
+  float size = map_size();
+#if BIAS == BIAS_NORMAL_OFFSET
+  // Holbert 2011: along the geometric normal, by texels, more where the light grazes.
+  float sine = sqrt(max(1.0 - facing * facing, 0.0));
+  float offset = texel_world_size(face, -q.z, size) * params.bias_normal * sine;
+  q += offset * face_space(face, vec4(n, 0.0));
+#endif
+  query.plane = make_receiver(face, q, face_space(face, vec4(n, 0.0)), size);
+  query.position = query.plane.texel;
+  bool seen = face_sees(vec3(query.position / size, query.plane.z));
+  query.plane = bias_receiver(face, query.plane, bias_world(texel_world_size(face, query.plane.z, size), query.plane.slope));
+#if BIAS != BIAS_RECEIVER_PLANE
+  // The pixel's own depth stands for its own texel; the plane tells only how neighbours differ from it.
+  query.plane.texel = floor(query.plane.texel) + 0.5;
+#endif
+  if (is_background(device_depth)) return PIXEL_BACKGROUND;
+  if (facing <= 0.0) return PIXEL_AWAY;
+  return seen ? PIXEL_INSIDE : PIXEL_OUTSIDE;
+}
+
+float map_depth(Query query, ivec2 texel) {
+  ivec2 last = textureSize(shadow_map, 0).xy - 1;
+  return shadow_map_at(clamp(texel, ivec2(0), last), query.face).x;
+}
+
+// (3.2) at a texel, for the receiver's tangent plane there.
+bool is_lit(Query query, ivec2 texel) {
+  float receiver = receiver_depth(faces[query.face], query.plane, vec2(texel) + 0.5, ENCODING == ENCODING_LINEAR);
+  return receiver <= map_depth(query, texel);
+}
+
+float unmapped_visibility(int state) { return state == PIXEL_AWAY ? 0.0 : 1.0; }

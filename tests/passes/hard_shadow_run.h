@@ -1,0 +1,90 @@
+// One frame of a hard-shadow graph on software Vulkan with validation, held against the ray tracer.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/metrics.h"
+#include "engine/reference.h"
+#include "engine/renderer.h"
+
+namespace gnomon::hard_shadow {
+
+struct Run {
+  std::vector<std::vector<float>> visibility;  // [light], row 0 at the top
+  std::vector<std::string> warnings;
+  std::map<std::string, double> facts;
+};
+
+inline std::shared_ptr<Device> device() {
+  static const std::shared_ptr<Device> opened = open_device({"llvmpipe", true});
+  return opened;
+}
+
+inline RenderSettings settings(bool reversed_z, uint32_t width = 160, uint32_t height = 120) {
+  RenderSettings s;
+  s.width = width, s.height = height;
+  s.reversed_z = reversed_z;
+  return s;
+}
+
+// Renders two frames: the second must have the first one's bits, every value must be 0 or 1, and the layers
+// silent.
+inline Run render(const std::string& graph, const Scene& scene, const RenderSettings& s,
+                  const Values& set = {}) {
+  const size_t messages = validation_messages(*device()).size();
+  Renderer renderer(device(), std::make_shared<Scene>(scene), load_graph(find_graph(graph), set), s);
+  renderer.render(TimingMode::none);
+  const Image first = renderer.read("visibility");
+  renderer.render(TimingMode::none);
+  const Image second = renderer.read("visibility");
+  Run run;
+  for (size_t light = 0; light < scene.lights.size(); ++light) {
+    const std::string name = light == 0 ? "Y" : "light" + std::to_string(light) + ".Y";
+    const auto a = first.plane(name), b = second.plane(name);
+    run.visibility.emplace_back(a.begin(), a.end());
+    EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end())) << "two frames differ, " << name;
+    for (const float v : run.visibility.back())
+      if (v != 0.0f && v != 1.0f) {
+        ADD_FAILURE() << "visibility " << v;
+        break;
+      }
+  }
+  const auto& all = validation_messages(*device());
+  for (size_t i = messages; i < all.size(); ++i) ADD_FAILURE() << all[i];
+  run.warnings = renderer.warnings();
+  run.facts = renderer.facts();
+  return run;
+}
+
+inline Reference trace(const Scene& scene, const RenderSettings& s) {
+  ReferenceSettings r;
+  r.width = s.width, r.height = s.height;
+  return ReferenceTracer(scene).trace(r);
+}
+
+struct Error {
+  uint64_t counted = 0, wrong = 0, shadowed = 0;  // pixels; shadowed: of the reference
+  double share() const { return counted ? double(wrong) / double(counted) : 1.0; }
+};
+
+// Over all lights, the counted pixels only.
+inline Error compare(const Run& run, const Reference& reference) {
+  Error e;
+  for (size_t light = 0; light < run.visibility.size(); ++light)
+    for (size_t i = 0; i < run.visibility[light].size(); ++i) {
+      if (reference.domain[light][i] != Reference::counted) continue;
+      const bool lit = reference.visibility[light][i] >= 0.5f;
+      ++e.counted;
+      e.shadowed += !lit;
+      e.wrong += lit != (run.visibility[light][i] >= 0.5f);
+    }
+  return e;
+}
+
+}  // namespace gnomon::hard_shadow

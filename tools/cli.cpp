@@ -1,0 +1,181 @@
+#include "tools/cli.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+
+#include "bench/run_json.h"
+#include "engine/config.h"
+#include "engine/error.h"
+#include "engine/graph.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint32_t max_side = 16384;  // pixels
+
+constexpr const char* footer = R"(Examples:
+  gnomon render fence --graph rbsm_nonconservative --set shadow_map=2048 --out out/fence
+  gnomon bench demo                          every technique on small scenes, with a table
+  gnomon explain fence --graph shadow_volumes
+  gnomon list graphs
+
+Exit status: 0 done, 1 a comparison or measurement failed, 2 bad input (nothing is written).
+Run 'gnomon COMMAND --help' for the options of a command.)";
+
+void print_error(const std::string& text) {
+  size_t begin = 0;
+  while (begin <= text.size()) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    fmt::print(stderr, "gnomon: {}\n", text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+int parse(CLI::App& app, int argc, const char* const* argv) {
+  try {
+    app.parse(argc, argv);
+    return exit_done;
+  } catch (const CLI::Success& done) {  // --help, --version
+    app.exit(done);
+    return exit_done;
+  } catch (const CLI::ParseError& error) {
+    print_error(error.what());
+    fmt::print(stderr, "Run 'gnomon --help' for the commands, 'gnomon COMMAND --help' for their options.\n");
+    return exit_bad_input;
+  }
+}
+
+int run(int argc, const char* const* argv) {
+  CLI::App app(
+      "Gnomon: real-time shadow techniques, their error against a ray-traced reference and their run time.",
+      "gnomon");
+  app.footer(footer);
+  app.set_version_flag("--version", std::string("gnomon ") + version());
+  app.require_subcommand(1);
+  int status = exit_done;
+  add_render(app, status);
+  add_reference(app, status);
+  add_compare(app, status);
+  add_bench(app, status);
+  add_explain(app, status);
+  add_check(app, status);
+  add_list(app, status);
+  add_scene(app, status);
+  const int parsed = parse(app, argc, argv);
+  return parsed == exit_done ? status : parsed;
+}
+
+}  // namespace
+
+int run_cli(int argc, const char* const* argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Error& error) {
+    print_error(error.what());
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory (a smaller --size or shadow map needs less)");
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  } catch (...) {
+    print_error("an unknown error");
+  }
+  return exit_bad_input;
+}
+
+Extent parse_size(const std::string& text) {
+  const char* const end = text.data() + text.size();
+  Extent size{0, 0};
+  const auto width = std::from_chars(text.data(), end, size.width);
+  bool good = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  if (good) {
+    const auto height = std::from_chars(width.ptr + 1, end, size.height);
+    good = height.ec == std::errc() && height.ptr == end;
+  }
+  if (!good) fail(fmt::format("size '{}' is not WIDTHxHEIGHT", text), {}, "--size", "--size 1280x720");
+  const auto in_range = [](uint32_t side) { return side >= 1 && side <= max_side; };
+  if (!in_range(size.width) || !in_range(size.height))
+    fail(fmt::format("size {}: each side must be in 1..{} pixels", text, max_side), {}, "--size");
+  return size;
+}
+
+Values parse_set(const std::vector<std::string>& settings) {
+  Values values;
+  Problems problems;
+  for (const std::string& setting : settings) {
+    const size_t equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == setting.size())
+      problems.add(fmt::format("'{}' is not NAME=VALUE", setting), {}, "--set", "--set shadow_map=2048");
+    else if (!values.emplace(setting.substr(0, equals), parse_value(setting.substr(equals + 1))).second)
+      problems.add(fmt::format("'{}' is set twice", setting.substr(0, equals)), {}, "--set");
+  }
+  problems.raise();
+  return values;
+}
+
+bool parse_camera_z(const std::string& text) {
+  if (text != "reversed" && text != "standard")
+    fail(fmt::format("camera depth '{}' is not known", text), {}, "--camera-z", "one of: reversed, standard");
+  return text == "reversed";
+}
+
+const Camera& camera_of(const Scene& scene, uint32_t index) {
+  if (index >= scene.cameras.size())
+    fail(fmt::format("camera {} does not exist: the scene has {} (counted from 0)", index,
+                     scene.cameras.size()),
+         scene.file.string(), "--camera");
+  return scene.cameras[index];
+}
+
+fs::path find_scene(const std::string& name_or_file) {
+  const fs::path given(name_or_file);
+  if (fs::exists(given)) return given;
+  const fs::path folder = resource_root() / "assets" / "scenes";
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const fs::path& path = entry.path();
+    if (path.extension() != ".glb" && path.extension() != ".gltf") continue;
+    if (path.stem() == name_or_file) return path;
+    names.push_back(path.stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  fail("no such scene file", name_or_file, {}, did_you_mean(name_or_file, names));
+}
+
+std::shared_ptr<const Scene> open_scene(const std::string& name_or_file) {
+  auto scene = std::make_shared<const Scene>(load_scene(find_scene(name_or_file)));
+  for (const std::string& message : scene->warnings.messages) warn(message);
+  return scene;
+}
+
+void add_device_options(CLI::App& command, DeviceFlags& flags) {
+  command
+      .add_option(
+          "--device", flags.part,
+          "part of the device's name, any case (default: a GPU, else lavapipe; see 'gnomon list devices')")
+      ->type_name("PART");
+  command.add_flag("--validation", flags.validation,
+                   "Vulkan validation and synchronisation validation; a message makes the exit status 1");
+}
+
+std::shared_ptr<Device> open_device(const DeviceFlags& flags) {
+  return open_device(DeviceOptions{flags.part, flags.validation});
+}
+
+int report_validation(const Device& device) {
+  const std::vector<std::string>& messages = validation_messages(device);
+  for (const std::string& message : messages) fmt::print(stderr, "gnomon: validation: {}\n", message);
+  return messages.empty() ? exit_done : exit_failed;
+}
+
+void warn(const std::string& line) { fmt::print(stderr, "gnomon: warning: {}\n", line); }
+
+}  // namespace gnomon

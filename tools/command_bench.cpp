@@ -1,0 +1,136 @@
+// gnomon bench: a suite, measured technique by technique in turn.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <ctime>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/harness.h"
+#include "bench/progress.h"
+#include "bench/results.h"
+#include "bench/stage.h"
+#include "bench/table.h"
+#include "bench/truth.h"
+#include "engine/error.h"
+#include "engine/image.h"
+#include "tools/cli.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Options {
+  std::string suite, shard = "1/1";
+  fs::path out, json_file;
+  DeviceFlags device;
+  bool resume = false, overwrite = false;
+  uint32_t repeat = 0;
+};
+
+// "2/4" -> 2, 4.
+std::pair<uint32_t, uint32_t> parse_shard(const std::string& text) {
+  const char* const end = text.data() + text.size();
+  std::pair<uint32_t, uint32_t> shard{0, 0};
+  const auto first = std::from_chars(text.data(), end, shard.first);
+  bool good = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
+  if (good) {
+    const auto second = std::from_chars(first.ptr + 1, end, shard.second);
+    good = second.ec == std::errc() && second.ptr == end;
+  }
+  if (!good || shard.first < 1 || shard.first > shard.second)
+    fail(fmt::format("shard '{}' is not I/N with I in 1..N", text), {}, "--shard", "--shard 1/4");
+  return shard;
+}
+
+std::string time_stamp() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y%m%d-%H%M%S", &local);
+  return text;
+}
+
+void write_rows(const fs::path& file, const std::vector<json>& rows) {
+  write_text(file, json(rows).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+int bench_command(const Options& options) {
+  const auto [shard, shards] = parse_shard(options.shard);
+  Suite suite = load_suite(find_suite(options.suite));
+  if (options.repeat > 0) suite.repeat = options.repeat;
+  for (const std::string& notice : suite.notices) fmt::print(stderr, "gnomon: note: {}\n", notice);
+
+  BenchOptions bench;
+  bench.out = options.out.empty() ? fs::path("out") / (suite.name + "-" + time_stamp()) : options.out;
+  bench.resume = options.resume;
+  bench.overwrite = options.overwrite;
+  bench.shard = shard;
+  bench.shards = shards;
+  const auto device = open_device(options.device);
+  bench.device = device_info(*device);
+  fmt::print(stderr, "{}: {} scenes, {} sizes, {} techniques on {}\n", suite.name, suite.scenes.size(),
+             suite.sizes.size(), suite.configs.size(), bench.device.name);
+  Progress progress("bench " + suite.name, 10);
+  double share = 0;
+  bench.progress = [&](double now, const std::string& note) { progress.update(share = now, note); };
+  const auto tracing = [&](double, const std::string& note) { progress.update(share, note); };
+  const BenchResult result = run_suite(suite, bench, device_stages(device, cache_folder(), tracing));
+  progress.done();
+
+  const std::vector<json> rows = read_results(result.results);
+  fmt::print("\n{}", to_table(rows));
+  if (!options.json_file.empty()) write_rows(options.json_file, rows);
+  if (result.resumed > 0) fmt::print("{} rows were there already\n", result.resumed);
+  fmt::print("{}\n", result.results.string());
+  if (result.failed > 0)
+    fmt::print(stderr, "gnomon: {} of {} rows failed; their status says why\n", result.failed,
+               result.measured);
+  const int validation = report_validation(*device);
+  return result.failed > 0 ? exit_failed : validation;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("bench", "measure a suite of techniques and scenes; ends with a table");
+  command
+      ->add_option("SUITE", options->suite,
+                   "a suite file, or the name of one in bench/suites (demo, hard, bias)")
+      ->required();
+  command
+      ->add_option("--out,-o", options->out,
+                   "folder for results.jsonl and suite.json (default: out/SUITE-TIME)")
+      ->type_name("DIR");
+  command->add_option("--json", options->json_file, "write all rows as one JSON array")->type_name("FILE");
+  CLI::Option* resume =
+      command->add_flag("--resume", options->resume,
+                        "go on in --out: rows that are there with status ok are not measured again");
+  command->add_flag("--overwrite", options->overwrite, "throw away the results in --out")->excludes(resume);
+  command->add_option("--shard", options->shard, "measure the I-th of N equal parts of the rows (I from 1)")
+      ->type_name("I/N")
+      ->capture_default_str();
+  command->add_option("--repeat", options->repeat, "timed rounds, instead of the suite's")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000));
+  add_device_options(*command, options->device);
+  command->footer(
+      R"(The techniques run in turn (A B C A B C ...), so that a slow spell of the machine hits all of them; 'ratio' is the
+median of the ratios to the baseline in the same round. A technique that fails gives a row with its reason, the suite
+goes on, and the exit status is 1. Suites name scenes through $GNOMON_SCENES, too (see docs/reading-the-report.md).
+
+Examples:
+  gnomon bench demo
+  gnomon bench hard --out out/hard
+  gnomon bench hard --out out/hard --resume        after an interruption
+  gnomon bench hard --out out/hard-2 --shard 2/4)");
+  command->callback([options, &status] { status = bench_command(*options); });
+}
+
+}  // namespace gnomon

@@ -1,0 +1,279 @@
+// gnomon render: one technique on one scene: images, timings, and the error when asked for.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "bench/progress.h"
+#include "bench/rounds.h"
+#include "bench/run_json.h"
+#include "bench/truth.h"
+#include "engine/config.h"
+#include "engine/error.h"
+#include "engine/image.h"
+#include "tools/cli.h"
+#include "tools/output_folder.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Options {
+  std::string scene, graph, size = "1280x720", camera_z = "reversed", reference = "none";
+  std::vector<std::string> set, capture;
+  fs::path out, json_file;
+  DeviceFlags device;
+  uint32_t camera = 0, repeat = 5, warmup = 2;
+  bool no_alias = false, keep_all = false, error = false;
+};
+
+struct Capture {
+  std::string port;
+  fs::path file;
+};
+
+std::vector<Capture> parse_captures(const std::vector<std::string>& texts) {
+  std::vector<Capture> captures;
+  Problems problems;
+  for (const std::string& text : texts) {
+    const size_t equals = text.find('=');
+    const size_t dot = text.find('.');
+    if (equals == std::string::npos || dot == std::string::npos || dot == 0 || dot + 1 >= equals ||
+        fs::path(text.substr(equals + 1)).extension() != ".exr")
+      problems.add(fmt::format("'{}' is not NODE.PORT=FILE.exr", text), {}, "--capture",
+                   "--capture mean.result=mean.exr");
+    else
+      captures.push_back({text.substr(0, equals), text.substr(equals + 1)});
+  }
+  problems.raise();
+  return captures;
+}
+
+// Samples of the reference; empty: none wanted.
+std::optional<uint32_t> reference_samples(const Options& options) {
+  if (options.reference == "none") return options.error ? std::optional<uint32_t>(0) : std::nullopt;
+  const Value value = parse_value(options.reference);
+  const auto* samples = std::get_if<std::int64_t>(&value);
+  if (samples == nullptr || *samples < 0 || *samples > (1 << 20))
+    fail(fmt::format("reference '{}' is neither a number of samples nor none", options.reference), {},
+         "--reference", "--reference 0 for hard shadows");
+  return static_cast<uint32_t>(*samples);
+}
+
+struct Job {  // everything the options say, checked
+  std::shared_ptr<const Scene> scene;
+  Graph graph;
+  RenderSettings settings;
+  std::vector<Capture> captures;
+  std::optional<uint32_t> samples;
+};
+
+Job prepare(const Options& options) {
+  Job job;
+  const Extent size = parse_size(options.size);
+  job.settings.width = size.width;
+  job.settings.height = size.height;
+  job.settings.camera = options.camera;
+  job.settings.reversed_z = parse_camera_z(options.camera_z);
+  job.settings.alias = !options.no_alias;
+  job.settings.keep_all = options.keep_all;
+  job.captures = parse_captures(options.capture);
+  for (const Capture& capture : job.captures) job.settings.captures.push_back(capture.port);
+  job.samples = reference_samples(options);
+  const Values set = parse_set(options.set);
+  if (options.repeat < 1) fail("at least one frame is measured", {}, "--repeat");
+  const fs::path file = find_scene(options.scene);
+  job.graph = load_graph(find_graph(options.graph), set);
+  job.scene = open_scene(file.string());
+  camera_of(*job.scene, options.camera);
+  return job;
+}
+
+struct Images {
+  std::optional<Image> color;
+  Image visibility;
+  std::vector<std::pair<fs::path, Image>> captured;
+};
+
+Images read_images(Renderer& renderer, const Job& job) {
+  Images images;
+  images.visibility = renderer.read("visibility");
+  if (job.graph.outputs.count("color") != 0) images.color = renderer.read("color");
+  for (const Capture& capture : job.captures)
+    images.captured.emplace_back(capture.file, renderer.read(capture.port));
+  return images;
+}
+
+void write_images(OutputFolder& folder, const Images& images) {
+  if (images.color) {
+    write_png_srgb(folder.file("color.png"), rgb_of(*images.color));
+    write_exr(folder.file("color.exr"), *images.color);
+  }
+  write_exr(folder.file("visibility.exr"), images.visibility);
+}
+
+void print_passes(const json& run) {
+  fmt::print("  {:<24}{:<24}{:>10}{:>10}{:>10}\n", "pass", "type", "gpu ms", "isolated", "cpu ms");
+  const auto number = [](const json& value) {
+    return value.is_object() ? fmt::format("{:.3f}", value["median"].get<double>()) : std::string("-");
+  };
+  for (const json& pass : run["passes"]) {
+    std::string id = pass["id"].get<std::string>();
+    if (pass["iteration"].get<int>() > 0) id += fmt::format(" #{}", pass["iteration"].get<int>());
+    fmt::print("  {:<24}{:<24}{:>10}{:>10}{:>10.3f}\n", id, pass["type"].get<std::string>(),
+               number(pass["gpu_ms"]["overlapped"]), number(pass["gpu_ms"]["isolated"]),
+               pass["cpu_ms"].get<double>());
+  }
+}
+
+void print_error(const json& error) {
+  if (!error.is_object()) return;
+  const auto share = [&](const char* name) {
+    return error.contains(name) && error[name].is_number()
+               ? fmt::format("{:.4f} %", 100 * error[name].get<double>())
+               : std::string("-");
+  };
+  fmt::print("  error: {} misclassified ({} wrongly lit, {} wrongly shadowed), acne {}, RMSE {:.4f}\n",
+             share("misclassified"), share("wrongly_lit"), share("wrongly_shadowed"), share("acne"),
+             error.value("rmse", 0.0));
+}
+
+void print_run(const Job& job, const json& run) {
+  const json& frame = run["frame_ms"];
+  fmt::print("{} on {}, {}x{}, {}\n", job.graph.name, job.scene->name, job.settings.width,
+             job.settings.height, run["device"].get<std::string>());
+  fmt::print("  frame {:.3f} ms (median of {}, 95 % interval {:.3f}..{:.3f}), recorded in {:.3f} ms\n",
+             frame["median"].get<double>(), frame["n"].get<size_t>(), frame["ci95"][0].get<double>(),
+             frame["ci95"][1].get<double>(), run["record_ms"]["median"].get<double>());
+  print_passes(run);
+  for (const json& pass : run["left_out"])
+    fmt::print("  left out: {}: {}\n", pass["pass"].get<std::string>(), pass["reason"].get<std::string>());
+  print_error(run["error"]);
+}
+
+std::string error_of(const Job& job, const Images& images) {
+  Progress progress("reference " + job.scene->name);
+  ReferenceSettings settings;
+  settings.width = job.settings.width;
+  settings.height = job.settings.height;
+  settings.samples = *job.samples;
+  settings.camera = job.settings.camera;
+  settings.progress = [&](double share) { progress.update(share); };
+  const bool finite_color = images.color && count_nonfinite(*images.color) == 0;
+  return Truth(job.scene, settings, cache_folder())
+      .error_json(images.visibility, finite_color ? &*images.color : nullptr, job.graph.vars);
+}
+
+int render_command(const Options& options) {
+  const Job job = prepare(options);
+  const auto device = open_device(options.device);
+  Renderer renderer(device, job.scene, job.graph, job.settings);
+  const auto subject = subject_of(renderer);
+  Row row;
+  describe_graph(row, job.graph);
+  row.scene = fs::weakly_canonical(job.scene->file);
+  row.set = parse_set(options.set);
+  row.size = {job.settings.width, job.settings.height};
+  row.camera = options.camera;
+  row.reversed_z = job.settings.reversed_z;
+  row.alias = job.settings.alias;
+  row.keep_all = job.settings.keep_all;
+  row.device = device_info(*device);
+  row.samples = run_rounds({subject.get()}, {options.warmup, options.repeat, options.repeat}).front();
+  if (!row.samples.error.empty()) fail(row.samples.error, options.graph);
+  const Images images = read_images(renderer, job);
+  describe_renderer(row, renderer);
+  for (const std::string& warning : row.warnings) warn(warning);
+  row.nonfinite = count_nonfinite(images.visibility) + (images.color ? count_nonfinite(*images.color) : 0);
+  if (job.samples) {
+    row.reference_samples = *job.samples;
+    row.error_json = error_of(job, images);
+  }
+  if (row.nonfinite > 0)
+    row.status = fmt::format("error: {} values of the output are not finite", row.nonfinite);
+  const json run = to_json(row);
+
+  const fs::path out =
+      options.out.empty() ? fs::path("out") / (job.scene->name + "-" + job.graph.name) : options.out;
+  OutputFolder folder(out);
+  write_images(folder, images);
+  write_text(folder.file("run.json"), run.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  for (const auto& [file, image] : images.captured) write_exr(file, image);
+  if (!options.json_file.empty())
+    write_text(options.json_file, run.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  folder.keep();
+
+  print_run(job, run);
+  fmt::print("  {}\n", out.string());
+  if (row.nonfinite > 0) {
+    fmt::print(stderr, "gnomon: {}\n", row.status);
+    return exit_failed;
+  }
+  return report_validation(*device);
+}
+
+void add_options(CLI::App& command, Options& o) {
+  command.add_option("SCENE", o.scene, "a .glb or .gltf file, or the name of a scene in assets/scenes")
+      ->required();
+  command.add_option("--graph,-g", o.graph, "technique: a name of 'gnomon list graphs', or a graph file")
+      ->required()
+      ->type_name("NAME|FILE");
+  command.add_option("--size", o.size, "pixels")->type_name("WxH")->capture_default_str();
+  command.add_option("--set", o.set, "a variable of the graph; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->take_all();
+  command.add_option("--capture", o.capture, "also write this port as EXR; may be repeated")
+      ->type_name("NODE.PORT=FILE.exr")
+      ->take_all();
+  command.add_option("--out,-o", o.out, "folder for the images and run.json (default: out/SCENE-GRAPH)")
+      ->type_name("DIR");
+  command.add_option("--json", o.json_file, "write run.json here as well")->type_name("FILE");
+  command.add_option("--camera", o.camera, "index of the scene's camera")
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--camera-z", o.camera_z, "camera depth: reversed (1 near, 0 far) or standard")
+      ->type_name("reversed|standard")
+      ->capture_default_str();
+  command.add_option("--repeat", o.repeat, "measured frames")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command.add_option("--warmup", o.warmup, "frames before anything counts")
+      ->type_name("N")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  command.add_flag("--error", o.error, "measure the error against the ray-traced hard shadows");
+  command
+      .add_option(
+          "--reference", o.reference,
+          "measure the error against a reference with N samples on each area light (0: hard), or none")
+      ->type_name("N|none")
+      ->capture_default_str();
+  command.add_flag("--no-alias", o.no_alias, "give every intermediate image memory of its own");
+  command.add_flag("--keep-all", o.keep_all, "run the passes that this scene does not need, too");
+  add_device_options(command, o.device);
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("render", "render one technique on one scene, and time it");
+  add_options(*command, *options);
+  command->footer(
+      R"(Writes color.png (sRGB), color.exr (linear), visibility.exr (channel Y: 0 umbra, 1 lit; light1.Y, ... for
+further lights; row 0 at the top) and run.json (docs/reading-the-report.md). Times are milliseconds.
+
+Examples:
+  gnomon render fence --graph shadow_mapping
+  gnomon render robot.glb --graph rbsm_conservative --set shadow_map=512 --error --out out/robot
+  gnomon render fence -g shadow_mapping --capture map.depth=map.exr --device lavapipe)");
+  command->callback([options, &status] { status = render_command(*options); });
+}
+
+}  // namespace gnomon

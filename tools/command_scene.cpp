@@ -1,0 +1,80 @@
+// gnomon scene: the small scenes that the project makes itself, and what a scene file holds.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "engine/error.h"
+#include "engine/graph.h"
+#include "engine/scene.h"
+#include "tools/cli.h"
+#include "tools/scene_generate.h"
+#include "tools/scene_info.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string name, file;
+  fs::path out;
+};
+
+void check_name(const std::string& name) {
+  std::vector<std::string> names{"all"};
+  for (const SceneGenerator& generator : scene_generators()) {
+    if (generator.name == name) return;
+    names.push_back(generator.name);
+  }
+  if (name != "all")
+    fail(fmt::format("there is no scene '{}' to generate", name), {}, {}, did_you_mean(name, names));
+}
+
+void generate_command(const Options& options) {
+  check_name(options.name);
+  const fs::path out = options.out.empty() ? resource_root() / "assets" / "scenes" : options.out;
+  fs::create_directories(out);
+  for (const SceneGenerator& generator : scene_generators()) {
+    if (options.name != "all" && options.name != generator.name) continue;
+    generate_scene(generator.name, out);
+    const fs::path file = out / (generator.name + ".glb");
+    fmt::print("{:<16}{:>7} kB  {}\n", generator.name, fs::file_size(file) / 1000,
+               file.lexically_normal().string());
+  }
+}
+
+std::string generator_list() {
+  std::string text = "Scenes:\n";
+  for (const SceneGenerator& generator : scene_generators())
+    text += fmt::format("  {:<16}{}\n", generator.name, generator.description);
+  return text + "\nExample:\n  gnomon scene generate fence --out scenes";
+}
+
+}  // namespace
+
+void add_scene(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("scene", "generate the small scenes, or say what a scene file holds");
+  command->require_subcommand(1);
+  CLI::App* generate = command->add_subcommand("generate", "write a small scene; the same bytes every time");
+  generate->add_option("NAME", options->name, "a scene of the list below, or all")->required();
+  generate->add_option("--out,-o", options->out, "folder (default: assets/scenes)")->type_name("DIR");
+  generate->footer(generator_list());
+  generate->callback([options, &status] {
+    generate_command(*options);
+    status = exit_done;
+  });
+  CLI::App* info =
+      command->add_subcommand("info", "meshes, materials, lights, cameras, bounds and flaws of a scene");
+  info->add_option("FILE", options->file, "a .glb or .gltf file, or the name of a scene in assets/scenes")
+      ->required();
+  info->callback([options, &status] {
+    fmt::print("{}", describe_scene(load_scene(find_scene(options->file))));
+    status = exit_done;
+  });
+}
+
+}  // namespace gnomon

@@ -1,0 +1,49 @@
+// Small scenes made by code: the same bytes every time, one .glb of less than 1 MB each.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gnomon {
+
+struct SceneGenerator {
+  std::string name;
+  std::string description;  // one sentence
+};
+
+// In alphabetical order.
+std::vector<SceneGenerator> scene_generators();
+
+// Writes out_dir/NAME.glb (through a file beside it). Error for an unknown name or a folder that cannot be
+// written.
+void generate_scene(const std::string& name, const std::filesystem::path& out_dir);
+
+// The bytes that generate_scene() writes.
+std::string scene_bytes(const std::string& name);
+
+// Exact measures of the analytic scenes, world units; the ground is the plane y = 0 in both. All light
+// sources face straight down, their local x is the world's x, their local y the world's -z.
+namespace sphere_plane {
+constexpr double sphere_radius = 1.5;
+constexpr double sphere_centre[3] = {0.0, 2.5, 0.0};
+constexpr double light[3] = {2.0, 10.0, -1.0};
+constexpr double light_side = 0.4;   // of the square area light
+constexpr double ground_half = 6.0;  // the ground is [-6, 6] x [-6, 6]
+// Vertices lie on the sphere (to 2^-17); the faces are inside it by at most this share of the radius.
+constexpr double tessellation_error = 4e-4;
+}  // namespace sphere_plane
+
+// The blocker is the square [-1, 1] x [-1, 1] at y = 2, the light is above its centre. Hard shadow: the
+// square of half side blocker_half * light_height / (light_height - blocker_height) = 4/3. Area light of side
+// s: umbra of half side 4/3 - (s / 2) / 3, penumbra out to 4/3 + (s / 2) / 3, visibility separable in x and z
+// (linear in between).
+namespace square_plane {
+constexpr double blocker_half = 1.0;
+constexpr double blocker_height = 2.0;
+constexpr double light_height = 8.0;
+constexpr double light_side = 0.32;
+constexpr double ground_half = 5.5;
+}  // namespace square_plane
+
+}  // namespace gnomon

@@ -1,0 +1,240 @@
+#include "tools/scenes/builder.h"
+
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/quaternion.hpp>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace gnomon::generate {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double grid = 65536.0;
+constexpr int array_buffer = 34962, element_buffer = 34963, type_float = 5126, type_short = 5123,
+              type_int = 5125;
+
+float on_grid(double value) { return static_cast<float>(std::round(value * grid) / grid) + 0.0f; }
+double rounded(double value) { return std::round(value * 1e9) / 1e9 + 0.0; }
+Json to_json(const glm::dvec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
+
+Json rotation_json(const glm::dmat3& rotation) {
+  glm::dquat q = glm::normalize(glm::quat_cast(rotation));
+  if (q.w < 0) q = -q;
+  return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)};
+}
+
+// Looks along -z; `up` is y, or -z when looking straight up or down.
+glm::dmat3 looking(const glm::dvec3& direction) {
+  const glm::dvec3 z = -glm::normalize(direction);
+  const glm::dvec3 up = std::abs(z.y) < 0.999 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
+  const glm::dvec3 x = glm::normalize(glm::cross(up, z));
+  return {x, glm::cross(z, x), z};
+}
+
+}  // namespace
+
+uint32_t Shape::vertex(const glm::dvec3& position, const glm::dvec3& normal) {
+  positions.push_back(position);
+  normals.push_back(normal);
+  return static_cast<uint32_t>(positions.size() - 1);
+}
+
+void Shape::triangle(uint32_t a, uint32_t b, uint32_t c) { indices.insert(indices.end(), {a, b, c}); }
+
+void Shape::quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
+  const glm::dvec3 n = glm::normalize(glm::cross(c - a, d - b));
+  const uint32_t first = vertex(a, n);
+  for (const glm::dvec3& p : {b, c, d}) vertex(p, n);
+  triangle(first, first + 1, first + 2);
+  triangle(first, first + 2, first + 3);
+}
+
+void Shape::flat_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 n = glm::normalize(glm::cross(b - a, c - a));
+  const uint32_t first = vertex(a, n);
+  vertex(b, n);
+  vertex(c, n);
+  triangle(first, first + 1, first + 2);
+}
+
+struct Builder::Impl {
+  Json document;
+  std::string bytes;
+
+  size_t view(const void* data, size_t size, int target) {
+    while (bytes.size() % 4 != 0) bytes.push_back('\0');
+    Json view = {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", size}};
+    if (target != 0) view["target"] = target;
+    document["bufferViews"].push_back(view);
+    bytes.append(static_cast<const char*>(data), size);
+    return document["bufferViews"].size() - 1;
+  }
+
+  size_t accessor(size_t view, int component, size_t count, const char* type) {
+    document["accessors"].push_back(
+        {{"bufferView", view}, {"componentType", component}, {"count", count}, {"type", type}});
+    return document["accessors"].size() - 1;
+  }
+
+  size_t vectors(const std::vector<glm::dvec3>& values, bool with_bounds) {
+    std::vector<float> data;
+    glm::vec3 low(1e30f), high(-1e30f);
+    for (const glm::dvec3& v : values) {
+      const glm::vec3 p(on_grid(v.x), on_grid(v.y), on_grid(v.z));
+      low = glm::min(low, p), high = glm::max(high, p);
+      data.insert(data.end(), {p.x, p.y, p.z});
+    }
+    const size_t result =
+        accessor(view(data.data(), data.size() * 4, array_buffer), type_float, values.size(), "VEC3");
+    if (with_bounds) {
+      document["accessors"][result]["min"] = {low.x, low.y, low.z};
+      document["accessors"][result]["max"] = {high.x, high.y, high.z};
+    }
+    return result;
+  }
+
+  size_t coordinates(const std::vector<glm::dvec2>& values) {
+    std::vector<float> data;
+    for (const glm::dvec2& v : values) data.insert(data.end(), {on_grid(v.x), on_grid(v.y)});
+    return accessor(view(data.data(), data.size() * 4, array_buffer), type_float, values.size(), "VEC2");
+  }
+
+  size_t triangles(const Shape& shape) {
+    if (shape.positions.size() < 65535) {
+      const std::vector<uint16_t> small(shape.indices.begin(), shape.indices.end());
+      return accessor(view(small.data(), small.size() * 2, element_buffer), type_short, small.size(),
+                      "SCALAR");
+    }
+    return accessor(view(shape.indices.data(), shape.indices.size() * 4, element_buffer), type_int,
+                    shape.indices.size(), "SCALAR");
+  }
+
+  size_t add_node(const Json& node) {
+    document["nodes"].push_back(node);
+    const size_t index = document["nodes"].size() - 1;
+    document["scenes"][0]["nodes"].push_back(index);
+    return index;
+  }
+
+  size_t add_light(const Json& light) {
+    document["extensionsUsed"] = Json::array({"KHR_lights_punctual"});
+    Json& lights = document["extensions"]["KHR_lights_punctual"]["lights"];
+    lights.push_back(light);
+    return lights.size() - 1;
+  }
+};
+
+Builder::Builder(std::string name) : impl_(std::make_unique<Impl>()) {
+  impl_->document["asset"] = {{"version", "2.0"}, {"generator", "gnomon scene generate"}};
+  impl_->document["scene"] = 0;
+  impl_->document["scenes"] = Json::array({{{"name", std::move(name)}, {"nodes", Json::array()}}});
+}
+
+Builder::~Builder() = default;
+
+uint32_t Builder::texture(const std::string& name, const std::string& png) {
+  Json& document = impl_->document;
+  const size_t view = impl_->view(png.data(), png.size(), 0);
+  document["images"].push_back({{"name", name}, {"bufferView", view}, {"mimeType", "image/png"}});
+  if (!document.contains("samplers"))
+    document["samplers"] =
+        Json::array({{{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", 33071}, {"wrapT", 33071}}});
+  document["textures"].push_back({{"name", name}, {"source", document["images"].size() - 1}, {"sampler", 0}});
+  return static_cast<uint32_t>(document["textures"].size() - 1);
+}
+
+uint32_t Builder::material(const Surface& surface) {
+  const glm::dvec3& c = surface.color;
+  Json pbr = {{"baseColorFactor", {c.x, c.y, c.z, 1.0}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
+  if (surface.texture) pbr["baseColorTexture"] = {{"index", *surface.texture}};
+  Json material = {{"name", surface.name}, {"pbrMetallicRoughness", pbr}};
+  if (surface.double_sided) material["doubleSided"] = true;
+  if (surface.alpha_cutoff) material["alphaMode"] = "MASK", material["alphaCutoff"] = *surface.alpha_cutoff;
+  impl_->document["materials"].push_back(material);
+  return static_cast<uint32_t>(impl_->document["materials"].size() - 1);
+}
+
+uint32_t Builder::mesh(const std::string& name, const Shape& shape, uint32_t material) {
+  Json attributes = {{"POSITION", impl_->vectors(shape.positions, true)},
+                     {"NORMAL", impl_->vectors(shape.normals, false)}};
+  if (!shape.uvs.empty()) attributes["TEXCOORD_0"] = impl_->coordinates(shape.uvs);
+  const Json primitive = {
+      {"attributes", attributes}, {"indices", impl_->triangles(shape)}, {"material", material}};
+  impl_->document["meshes"].push_back({{"name", name}, {"primitives", Json::array({primitive})}});
+  return static_cast<uint32_t>(impl_->document["meshes"].size() - 1);
+}
+
+void Builder::node(const std::string& name, uint32_t mesh, const Placement& placement) {
+  Json node = {{"name", name}, {"mesh", mesh}};
+  if (placement.translation != glm::dvec3(0.0)) node["translation"] = to_json(placement.translation);
+  if (placement.rotation != glm::dmat3(1.0)) node["rotation"] = rotation_json(placement.rotation);
+  if (placement.scale != glm::dvec3(1.0)) node["scale"] = to_json(placement.scale);
+  impl_->add_node(node);
+}
+
+void Builder::add(const std::string& name, const Shape& shape, uint32_t material) {
+  node(name, mesh(name, shape, material));
+}
+
+void Builder::camera(const glm::dvec3& eye, const glm::dvec3& target, double fov_y, double near) {
+  impl_->document["cameras"].push_back(
+      {{"name", "camera"},
+       {"type", "perspective"},
+       {"perspective", {{"yfov", rounded(fov_y / 180 * std::numbers::pi)}, {"znear", near}}}});
+  impl_->add_node({{"name", "camera"},
+                   {"camera", impl_->document["cameras"].size() - 1},
+                   {"translation", to_json(eye)},
+                   {"rotation", rotation_json(looking(target - eye))}});
+}
+
+void Builder::spot(const glm::dvec3& eye, const glm::dvec3& target, double map_fov, double radiance,
+                   double side) {
+  const double distance = glm::length(target - eye), degree = std::numbers::pi / 180;
+  const double diagonal =
+      std::atan(std::sqrt(2.0) * std::tan(0.5 * map_fov * degree));  // the square is inside the cone
+  const size_t light = impl_->add_light(
+      {{"name", "light"},
+       {"type", "spot"},
+       {"intensity", std::round(radiance * std::numbers::pi * distance * distance)},
+       {"spot", {{"innerConeAngle", rounded(diagonal)}, {"outerConeAngle", rounded(diagonal + degree)}}}});
+  const double area = side > 0 ? side : std::round(4.0 * distance) / 100.0;
+  impl_->add_node(
+      {{"name", "light"},
+       {"translation", to_json(eye)},
+       {"rotation", rotation_json(looking(target - eye))},
+       {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}},
+       {"extras",
+        {{"area_light", {{"width", area}, {"height", area}}}, {"light", {{"fovy_deg", map_fov}}}}}});
+}
+
+void Builder::sun(const glm::dvec3& direction, double radiance) {
+  const size_t light = impl_->add_light(
+      {{"name", "sun"}, {"type", "directional"}, {"intensity", rounded(radiance * std::numbers::pi)}});
+  impl_->add_node({{"name", "sun"},
+                   {"rotation", rotation_json(looking(direction))},
+                   {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+}
+
+std::string Builder::glb() const {
+  Json document = impl_->document;
+  std::string data = impl_->bytes;
+  data.resize((data.size() + 3) / 4 * 4, '\0');
+  document["buffers"] = Json::array({{{"byteLength", data.size()}}});
+  std::string text = document.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  std::string file = "glTF";
+  const auto word = [&](size_t value) {
+    for (int i = 0; i < 4; ++i) file.push_back(static_cast<char>(value >> (8 * i) & 0xFF));
+  };
+  word(2);
+  word(12 + 8 + text.size() + 8 + data.size());
+  word(text.size());
+  file += "JSON" + text;
+  word(data.size());
+  file += std::string("BIN\0", 4) + data;
+  return file;
+}
+
+}  // namespace gnomon::generate

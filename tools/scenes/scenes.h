@@ -1,0 +1,17 @@
+// The generated scenes: each returns a .glb file's bytes.
+#pragma once
+
+#include <string>
+
+namespace gnomon::generate {
+
+std::string colonnade();
+std::string fence();
+std::string foliage();
+std::string hills();
+std::string lattice();
+std::string robot();
+std::string sphere_plane_scene();
+std::string square_plane_scene();
+
+}  // namespace gnomon::generate
