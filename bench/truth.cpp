@@ -1,7 +1,6 @@
 #include "bench/truth.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "bench/measure.h"
@@ -15,11 +14,6 @@ namespace fs = std::filesystem;
 
 constexpr uint32_t usual_map_size = 1024;  // texels
 
-const char* environment(const char* name) {
-  const char* value = std::getenv(name);
-  return value != nullptr && *value != '\0' ? value : nullptr;
-}
-
 uint32_t map_size_of(const Values& vars) {
   const auto found = vars.find("shadow_map");
   if (found == vars.end()) return usual_map_size;
@@ -28,13 +22,6 @@ uint32_t map_size_of(const Values& vars) {
 }
 
 }  // namespace
-
-fs::path cache_folder() {
-  if (const char* given = environment("GNOMON_CACHE")) return given;
-  if (const char* given = environment("XDG_CACHE_HOME")) return fs::path(given) / "gnomon";
-  if (const char* home = environment("HOME")) return fs::path(home) / ".cache" / "gnomon";
-  return fs::temp_directory_path() / "gnomon-cache";
-}
 
 Image rgb_of(const Image& color) {
   Image rgb(color.width, color.height, {"R", "G", "B"});

@@ -13,9 +13,6 @@
 
 namespace gnomon {
 
-// Traced references are kept here: $GNOMON_CACHE, else $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon.
-std::filesystem::path cache_folder();
-
 // The channels R, G, B of a shaded image; Error when one is missing.
 Image rgb_of(const Image& color);
 

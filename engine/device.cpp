@@ -60,15 +60,6 @@ std::string lower(std::string text) {
   return text;
 }
 
-bool has_extension(VkPhysicalDevice physical, const char* name) {
-  uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
-  std::vector<VkExtensionProperties> extensions(count);
-  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data());
-  return std::any_of(extensions.begin(), extensions.end(),
-                     [&](const auto& e) { return !std::strcmp(e.extensionName, name); });
-}
-
 VkInstance bare_instance() {
   if (volkInitialize() != VK_SUCCESS) fail("no Vulkan loader on this machine", {}, {}, kNoDeviceHint);
   VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "gnomon", 1, "gnomon", 1, VK_API_VERSION_1_3};
@@ -191,13 +182,16 @@ void Device::make_device() {
   queue.queueFamilyIndex = queue_family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  std::vector<const char*> extensions;
-  if (!has_extension(physical_, VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME))
+  VkPhysicalDeviceVulkan12Features have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceFeatures2 asked{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &have, {}};
+  vkGetPhysicalDeviceFeatures2(physical_, &asked);
+  if (!have.shaderOutputLayer)
     fail(fmt::format("'{}' cannot choose a layer in the vertex shader", info_.name), {}, {},
-         std::string("Gnomon needs ") + VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME);
-  extensions.push_back(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME);
+         "Gnomon needs the Vulkan 1.2 feature shaderOutputLayer");
 
-  VkPhysicalDeviceVulkan13Features f13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceVulkan12Features f12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  f12.shaderOutputLayer = VK_TRUE;
+  VkPhysicalDeviceVulkan13Features f13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, &f12};
   f13.synchronization2 = f13.dynamicRendering = f13.maintenance4 = VK_TRUE;
   VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &f13, {}};
   features.features.geometryShader = VK_TRUE;  // gl_PrimitiveID in fragment shaders
@@ -210,8 +204,6 @@ void Device::make_device() {
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = uint32_t(extensions.size());
-  info.ppEnabledExtensionNames = extensions.data();
   check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }

@@ -49,8 +49,9 @@ VertexInput vertex_input(VertexLayout layout) {
   in.attributes.push_back({0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0});
   if (layout == VertexLayout::positions) return in;
   in.bindings.push_back({1, sizeof(GpuScene::Attributes), VK_VERTEX_INPUT_RATE_VERTEX});
-  in.attributes.push_back({1, 1, VK_FORMAT_R16G16_SNORM, offsetof(GpuScene::Attributes, normal)});
   in.attributes.push_back({2, 1, VK_FORMAT_R32G32_SFLOAT, offsetof(GpuScene::Attributes, uv)});
+  if (layout == VertexLayout::masked) return in;
+  in.attributes.push_back({1, 1, VK_FORMAT_R16G16_SNORM, offsetof(GpuScene::Attributes, normal)});
   in.attributes.push_back({3, 1, VK_FORMAT_R16G16B16A16_UNORM, offsetof(GpuScene::Attributes, color)});
   return in;
 }

@@ -13,6 +13,7 @@ namespace gnomon {
 enum class VertexLayout {
   none,       // vertices come from gl_VertexIndex alone
   positions,  // location 0: vec3 position
+  masked,     // and location 2: uv
   full,       // and location 1: octahedral normal, 2: uv, 3: colour
   references  // location 0: uvec2, from a buffer of the pass' own
 };

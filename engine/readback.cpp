@@ -5,7 +5,7 @@
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 
-#include "engine/compile.h"
+#include "engine/compile_parts.h"
 #include "engine/error.h"
 
 namespace gnomon {

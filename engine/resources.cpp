@@ -169,30 +169,4 @@ VkImageAspectFlags aspect_of(VkFormat format) {
   }
 }
 
-uint32_t texel_bytes(VkFormat format) {
-  switch (format) {
-    case VK_FORMAT_R8_UNORM: return 1;
-    case VK_FORMAT_R16_SFLOAT:
-    case VK_FORMAT_D16_UNORM:
-    case VK_FORMAT_R8G8_UNORM: return 2;
-    case VK_FORMAT_R8G8B8A8_UNORM:
-    case VK_FORMAT_R8G8B8A8_SRGB:
-    case VK_FORMAT_R16G16_SNORM:
-    case VK_FORMAT_R16G16_SINT:
-    case VK_FORMAT_R16G16_UINT:
-    case VK_FORMAT_R16G16_SFLOAT:
-    case VK_FORMAT_R32_SFLOAT:
-    case VK_FORMAT_R32_UINT:
-    case VK_FORMAT_D32_SFLOAT: return 4;
-    case VK_FORMAT_D32_SFLOAT_S8_UINT:
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-    case VK_FORMAT_R16G16B16A16_UNORM:
-    case VK_FORMAT_R32G32_UINT:
-    case VK_FORMAT_R32G32_SFLOAT: return 8;
-    case VK_FORMAT_R32G32B32A32_UINT:
-    case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
-    default: fail(fmt::format("format {} is not one of those images are made of", int(format)));
-  }
-}
-
 }  // namespace gnomon

@@ -100,6 +100,5 @@ class OneShot {
 Buffer upload_buffer(const std::shared_ptr<Device>& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
 
 VkImageAspectFlags aspect_of(VkFormat format);
-uint32_t texel_bytes(VkFormat format);
 
 }  // namespace gnomon

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCacheVersion = 1;  // raise when compile options change
+constexpr int kCacheVersion = 2;  // raise when compile options change
 
 fs::path shader_folder() { return resource_root() / "shaders" / "glsl"; }
 
@@ -116,14 +116,20 @@ std::vector<uint32_t> to_spirv(const std::string& text, ShaderStage stage, const
   return words;
 }
 
+// Of the words, put behind them in the cache: drivers may crash on SPIR-V that a full disk cut short.
+uint32_t checksum(const std::vector<uint32_t>& words) { return XXH32(words.data(), words.size() * 4, 0); }
+
+// Empty when there is no such file, or not a whole one.
 std::vector<uint32_t> read_words(const fs::path& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   if (!in) return {};
   std::vector<uint32_t> words(size_t(in.tellg()) / 4);
   in.seekg(0);
   in.read(reinterpret_cast<char*>(words.data()), std::streamsize(words.size() * 4));
-  constexpr uint32_t kSpirvMagic = 0x07230203;
-  if (!in || words.size() < 5 || words[0] != kSpirvMagic) return {};
+  if (!in || words.size() < 6) return {};
+  const uint32_t stored = words.back();
+  words.pop_back();
+  if (stored != checksum(words)) return {};
   return words;
 }
 
@@ -133,7 +139,9 @@ void write_words(const fs::path& file, const std::vector<uint32_t>& words) {
   fs::create_directories(file.parent_path(), ignored);
   const fs::path beside = file.string() + fmt::format(".{}", getpid());
   std::ofstream out(beside, std::ios::binary);
+  const uint32_t sum = checksum(words);
   out.write(reinterpret_cast<const char*>(words.data()), std::streamsize(words.size() * 4));
+  out.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
   out.close();
   if (out)
     fs::rename(beside, file, ignored);

@@ -62,7 +62,7 @@ class ShadowMap : public Pass {
     pipelines.opaque = e.raster(state);
     state.defines.emplace_back("MASKED", "1");
     state.fragment = "shadow_map.glsl";
-    state.layout = VertexLayout::full;
+    state.layout = VertexLayout::masked;
     pipelines.masked = e.raster(state);
     return pipelines;
   }

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <set>
 
@@ -24,6 +25,9 @@ uint32_t groups(uint64_t items) {
   return uint32_t(std::min<uint64_t>((items + kGroup - 1) / kGroup, kMostGroups));
 }
 
+// Limits: 8 stencil bits count modulo 256, so a point in exactly 256 (512, ...) volumes is taken for lit.
+// Alpha-masked casters are cast whole. A watertight single-sided mesh casts from its far side alone: what the
+// camera sees of other objects inside of it is not shadowed by its near side.
 class ShadowVolumes : public Pass {
  public:
   void declare(Declaration& d) const override {
@@ -165,18 +169,24 @@ class ShadowVolumes : public Pass {
       z_fail_.push_back(near_plane_may_be_shadowed(casters_, camera, aspect_, light));
   }
 
-  void warn_about_meshes(Environment& e) const {
+  // One sentence a kind, naming every mesh once.
+  static void warn_about_meshes(Environment& e) {
     std::set<uint32_t> told;
+    std::vector<std::string> open, double_sided, masked;
     for (const Draw& draw : e.gpu_scene().draws()) {
       const uint32_t index = e.scene().instances[draw.instance].mesh;
       if (!told.insert(index).second) continue;
-      const std::string& name = e.scene().meshes[index].name;
-      if (!draw.watertight)
-        e.warn(fmt::format("open mesh '{}' casts triangle by triangle: slower than a watertight one", name));
-      else if (draw.double_sided)
-        e.warn(fmt::format("watertight mesh '{}' is double-sided and casts triangle by triangle", name));
-      if (draw.alpha_masked) e.warn(fmt::format("alpha-masked mesh '{}' casts as if it were opaque", name));
+      const std::string name = fmt::format("'{}'", e.scene().meshes[index].name);
+      if (!draw.watertight) open.push_back(name);
+      if (draw.watertight && draw.double_sided) double_sided.push_back(name);
+      if (draw.alpha_masked) masked.push_back(name);
     }
+    const auto warn = [&](const std::vector<std::string>& names, const char* kind, const char* how) {
+      if (!names.empty()) e.warn(fmt::format("{} {}: {}", kind, fmt::join(names, ", "), how));
+    };
+    warn(open, "open mesh", "cast triangle by triangle, slower than a watertight one");
+    warn(double_sided, "watertight but double-sided mesh", "cast triangle by triangle");
+    warn(masked, "alpha-masked mesh", "cast as if opaque");
   }
 
   void make_volumes(Context& c, uint32_t light) const {

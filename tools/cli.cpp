@@ -136,7 +136,8 @@ const Camera& camera_of(const Scene& scene, uint32_t index) {
 
 fs::path find_scene(const std::string& name_or_file) {
   const fs::path given(name_or_file);
-  if (fs::exists(given)) return given;
+  // A folder of the scene's name (images of it, say) is not meant.
+  if (fs::is_regular_file(given)) return given;
   const fs::path folder = resource_root() / "assets" / "scenes";
   std::vector<std::string> names;
   std::error_code ignored;

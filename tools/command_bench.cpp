@@ -15,6 +15,7 @@
 #include "bench/truth.h"
 #include "engine/error.h"
 #include "engine/image.h"
+#include "engine/shader.h"
 #include "tools/cli.h"
 
 namespace gnomon {

@@ -14,6 +14,7 @@
 #include "engine/config.h"
 #include "engine/error.h"
 #include "engine/image.h"
+#include "engine/shader.h"
 #include "tools/cli.h"
 #include "tools/output_folder.h"
 
@@ -147,7 +148,7 @@ void print_run(const Job& job, const json& run) {
   const json& frame = run["frame_ms"];
   fmt::print("{} on {}, {}x{}, {}\n", job.graph.name, job.scene->name, job.settings.width,
              job.settings.height, run["device"].get<std::string>());
-  fmt::print("  frame {:.3f} ms (median of {}, 95 % interval {:.3f}..{:.3f}), recorded in {:.3f} ms\n",
+  fmt::print("  frame {:.3f} ms (median of {}, interval {:.3f}..{:.3f}), recorded in {:.3f} ms\n",
              frame["median"].get<double>(), frame["n"].get<size_t>(), frame["ci95"][0].get<double>(),
              frame["ci95"][1].get<double>(), run["record_ms"]["median"].get<double>());
   print_passes(run);

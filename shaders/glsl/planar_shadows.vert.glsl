@@ -5,6 +5,7 @@
 
 layout(location = 0) in vec3 in_position;
 #ifdef MASKED
+layout(location = 1) in vec2 in_normal;  // unused: there for the layout's sake
 layout(location = 2) in vec2 in_uv;
 layout(location = 3) in vec4 in_color;
 layout(location = 0) out vec2 out_uv;

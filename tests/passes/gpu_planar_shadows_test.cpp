@@ -27,7 +27,7 @@ Scene turned(Scene scene, const glm::dmat4& by) {
 }
 
 void expect_error(const Scene& scene, const RenderSettings& s, const char* what) {
-  const Error e = compare(render("planar_shadows", scene, s), trace(scene, s));
+  const Misclassified e = compare(render("planar_shadows", scene, s), trace(scene, s));
   EXPECT_GT(e.counted, 1000u) << what;
   EXPECT_GT(e.shadowed, 0u) << what;
   EXPECT_LE(e.share(), kBound) << what << ": " << e.wrong << " of " << e.counted;
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(All, PlanarShadowsCase,
 TEST_P(PlanarShadowsCase, SquareHasItsClosedForm) {
   const Scene scene = analytic::square_over_plane(light(GetParam().type, kLightAt));
   const RenderSettings s = settings(GetParam().reversed_z);
-  const Run run = render("planar_shadows", scene, s);
+  const Frame run = render("planar_shadows", scene, s);
   const Reference seen = trace(scene, s);  // for the pixels' positions alone
   const glm::dvec3 eye(scene.cameras[0].world_from_camera[3]);
   size_t tested = 0, dark = 0, wrong = 0;
@@ -86,8 +86,8 @@ TEST_P(PlanarShadowsCase, SphereOverTiltedPlanes) {
     // One receiver: the sphere's own facets then are none.
     const Scene now = turned(scene, turn);
     const RenderSettings s = settings(GetParam().reversed_z);
-    const Run run = render("planar_shadows", now, s, {{"planes", int64_t(1)}});
-    const Error e = compare(run, trace(now, s));
+    const Frame run = render("planar_shadows", now, s, {{"planes", int64_t(1)}});
+    const Misclassified e = compare(run, trace(now, s));
     EXPECT_GT(e.shadowed, 50u);
     EXPECT_LE(e.share(), kBound) << "turned by " << angle << ": " << e.wrong << " of " << e.counted;
   }
@@ -123,7 +123,7 @@ TEST_P(PlanarShadowsCase, NoAntiShadow) {
   scene.cameras.push_back(analytic::camera({-5, 9, 7}, {0, 0, 0}));
   scene.lights.push_back(light(GetParam().type, {0.5, 4, 0.25}));
   const RenderSettings s = settings(GetParam().reversed_z);
-  const Run run = render("planar_shadows", scene, s, {{"planes", int64_t(1)}});
+  const Frame run = render("planar_shadows", scene, s, {{"planes", int64_t(1)}});
   const Reference reference = trace(scene, s);
   size_t counted = 0, wrong = 0;
   for (size_t i = 0; i < reference.depth.size(); ++i) {

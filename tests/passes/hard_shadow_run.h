@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@
 
 namespace gnomon::hard_shadow {
 
-struct Run {
+struct Frame {
   std::vector<std::vector<float>> visibility;  // [light], row 0 at the top
   std::vector<std::string> warnings;
   std::map<std::string, double> facts;
@@ -35,15 +36,15 @@ inline RenderSettings settings(bool reversed_z, uint32_t width = 160, uint32_t h
 
 // Renders two frames: the second must have the first one's bits, every value must be 0 or 1, and the layers
 // silent.
-inline Run render(const std::string& graph, const Scene& scene, const RenderSettings& s,
-                  const Values& set = {}) {
+inline Frame render(const std::string& graph, const Scene& scene, const RenderSettings& s,
+                    const Values& set = {}) {
   const size_t messages = validation_messages(*device()).size();
   Renderer renderer(device(), std::make_shared<Scene>(scene), load_graph(find_graph(graph), set), s);
   renderer.render(TimingMode::none);
   const Image first = renderer.read("visibility");
   renderer.render(TimingMode::none);
   const Image second = renderer.read("visibility");
-  Run run;
+  Frame run;
   for (size_t light = 0; light < scene.lights.size(); ++light) {
     const std::string name = light == 0 ? "Y" : "light" + std::to_string(light) + ".Y";
     const auto a = first.plane(name), b = second.plane(name);
@@ -68,14 +69,14 @@ inline Reference trace(const Scene& scene, const RenderSettings& s) {
   return ReferenceTracer(scene).trace(r);
 }
 
-struct Error {
+struct Misclassified {
   uint64_t counted = 0, wrong = 0, shadowed = 0;  // pixels; shadowed: of the reference
   double share() const { return counted ? double(wrong) / double(counted) : 1.0; }
 };
 
 // Over all lights, the counted pixels only.
-inline Error compare(const Run& run, const Reference& reference) {
-  Error e;
+inline Misclassified compare(const Frame& run, const Reference& reference) {
+  Misclassified e;
   for (size_t light = 0; light < run.visibility.size(); ++light)
     for (size_t i = 0; i < run.visibility[light].size(); ++i) {
       if (reference.domain[light][i] != Reference::counted) continue;

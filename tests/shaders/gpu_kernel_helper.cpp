@@ -66,8 +66,8 @@ fs::path scratch_folder() {
 Kernel::Kernel(const std::string& name, const std::string& glsl, uint32_t buffers)
     : device_(kernel_device()), buffers_(buffers) {
   make_layouts();
-  pipeline_ = make_compute_pipeline(device_, layout_, {write_shader(name, glsl), ShaderStage::compute, {}, {}},
-                                    VK_NULL_HANDLE);
+  pipeline_ = make_compute_pipeline(device_, layout_,
+                                    {write_shader(name, glsl), ShaderStage::compute, {}, {}}, VK_NULL_HANDLE);
 }
 
 Kernel::~Kernel() {
@@ -84,7 +84,8 @@ void Kernel::make_layouts() {
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   set.bindingCount = buffers_;
   set.pBindings = bindings.data();
-  check(vkCreateDescriptorSetLayout(device_->handle(), &set, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
+  check(vkCreateDescriptorSetLayout(device_->handle(), &set, nullptr, &set_layout_),
+        "vkCreateDescriptorSetLayout");
   VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
   layout.setLayoutCount = 1;
   layout.pSetLayouts = &set_layout_;
@@ -114,8 +115,8 @@ VkDescriptorSet Kernel::write_set(std::span<const VkDescriptorBufferInfo> buffer
   return set;
 }
 
-std::vector<std::byte> Kernel::run(std::initializer_list<std::span<const std::byte>> inputs, size_t output_bytes,
-                                   size_t invocations) const {
+std::vector<std::byte> Kernel::run(std::initializer_list<std::span<const std::byte>> inputs,
+                                   size_t output_bytes, size_t invocations) const {
   const size_t messages = device_->messages().size();
   if (inputs.size() + 1 != buffers_) throw std::logic_error("a kernel is run with a wrong number of inputs");
   std::vector<Buffer> buffers;
@@ -136,9 +137,10 @@ std::vector<std::byte> Kernel::run(std::initializer_list<std::span<const std::by
   vkCmdBindPipeline(once.commands(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.handle);
   vkCmdBindDescriptorSets(once.commands(), VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &set, 0, nullptr);
   vkCmdDispatch(once.commands(), uint32_t((invocations + 63) / 64), 1, 1);
-  VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT};
-  vkCmdPipelineBarrier(once.commands(), VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
-                       &barrier, 0, nullptr, 0, nullptr);
+  VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_SHADER_WRITE_BIT,
+                          VK_ACCESS_HOST_READ_BIT};
+  vkCmdPipelineBarrier(once.commands(), VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0,
+                       1, &barrier, 0, nullptr, 0, nullptr);
   once.submit_and_wait();
   expect_no_messages(*device_, messages);
   const auto out = buffers.back().bytes().first(output_bytes);

@@ -27,14 +27,15 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
 
 class Kernel {
  public:
-  // `glsl`: a whole compute shader without #version, local size 64; storage buffers are bindings 0.. of set 0, the
-  // output being the last. Includes resolve against shaders/glsl. Error: what the compiler says.
+  // `glsl`: a whole compute shader without #version, local size 64; storage buffers are bindings 0.. of set
+  // 0, the output being the last. Includes resolve against shaders/glsl. Error: what the compiler says.
   Kernel(const std::string& name, const std::string& glsl, uint32_t buffers);
   ~Kernel();
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  // Content of the output buffer, zero before. Fails the current test when the validation layers say anything.
+  // Content of the output buffer, zero before. Fails the current test when the validation layers say
+  // anything.
   std::vector<std::byte> run(std::initializer_list<std::span<const std::byte>> inputs, size_t output_bytes,
                              size_t invocations) const;
 

@@ -65,8 +65,10 @@ Discontinuity discontinuity(const VisibilityMap& map, int x, int y) {  // (3.3)
   return d;
 }
 
-// 3.1.3 and 3.2.3: texels are passed while they have the fragment's visibility and share a discontinuity direction.
-double signed_distance(const VisibilityMap& map, int x, int y, int direction, double within_texel, int max_size) {
+// 3.1.3 and 3.2.3: texels are passed while they have the fragment's visibility and share a discontinuity
+// direction.
+double signed_distance(const VisibilityMap& map, int x, int y, int direction, double within_texel,
+                       int max_size) {
   const Discontinuity own = discontinuity(map, x, y);
   const bool visibility = map.lit(x, y);
   int passed = 0;
@@ -88,7 +90,8 @@ double shape(double d1, double d2) {  // (3.4)
   return 1;
 }
 
-double clamped_length(double d1, double d2, int max_size) {  // denominator of (3.5), clamped as in listing A.4
+double clamped_length(double d1, double d2,
+                      int max_size) {  // denominator of (3.5), clamped as in listing A.4
   return std::min(std::abs(d1) + std::abs(d2), double(max_size));
 }
 
@@ -123,8 +126,8 @@ bool VisibilityMap::lit(int x, int y) const {
   return rows[size_t(std::clamp(y, 0, height() - 1))][size_t(std::clamp(x, 0, width() - 1))] == '.';
 }
 
-std::vector<Revectorized> revectorize_on_device(const VisibilityMap& map, const std::vector<Point>& points, int max_size,
-                                                bool mirror_c) {
+std::vector<Revectorized> revectorize_on_device(const VisibilityMap& map, const std::vector<Point>& points,
+                                                int max_size, bool mirror_c) {
   const Kernel kernel("revectorize", kKernel, 3);
   std::vector<int32_t> words{map.width(), map.height(), max_size, mirror_c ? 1 : 0};
   for (int y = 0; y < map.height(); ++y)

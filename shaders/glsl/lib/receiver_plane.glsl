@@ -57,13 +57,14 @@ Receiver bias_receiver(LightFace face, Receiver r, float bias) {
   return r;
 }
 
-// Encoded depth of the plane at a position of the map, in texels.
+// Encoded depth of the plane at a position of the map, in texels; at most 1, as empty texels have it: a plane that runs
+// beyond the far distance between two texels is not in the shadow of nothing.
 float receiver_depth(LightFace face, Receiver r, vec2 at, bool linear) {
   float value = r.base + dot(r.gradient, at - r.texel);
-  if (is_orthographic(face)) return encode_linear(face, value);
+  if (is_orthographic(face)) return min(encode_linear(face, value), 1.0);
   // A plane that passes behind the light within the offset counts as infinitely far.
   value = max(value, 1.0 / (1e4 * r.z));
-  return linear ? encode_linear(face, 1.0 / value) : encode_perspective(face, value);
+  return min(linear ? encode_linear(face, 1.0 / value) : encode_perspective(face, value), 1.0);
 }
 
 #endif

@@ -57,7 +57,8 @@ float rbsm_walk(ivec2 texel, ivec2 direction, float to_border, bool lit, bool si
       if (shares) whole += 1.0;
     }
   }
-  float distance = whole + to_border;
+  // On the texel's very border (c = 0) the sum may be zero, which has no sign, and (3.4) would see another shape.
+  float distance = whole + max(to_border, 1e-6);
   return found_end ? distance : -distance;
 }
 
