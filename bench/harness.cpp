@@ -76,7 +76,7 @@ class SuiteRun {
     if (options.shards < 1 || options.shard < 1 || options.shard > options.shards)
       fail(fmt::format("shard {}/{}: the first number must be in 1..{}", options.shard, options.shards,
                        options.shards));
-    const fs::path file = options.out / "results.jsonl";
+    fs::path file = options.out / "results.jsonl";
     if (options.overwrite && !options.resume) fs::remove(file);
     return file;
   }

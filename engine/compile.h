@@ -1,11 +1,11 @@
-// From a graph to a plan: what runs, in which order, with which resources, memory and barriers. Pure: no device,
-// so that a plan can be tested as text.
+// From a graph to a plan: what runs, in which order, with which resources, memory and barriers. Pure: no
+// device, so that a plan can be tested as text.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
 
-#include <functional>
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -30,27 +30,29 @@ bool writes(Access access);
 bool is_depth(VkFormat format);
 
 struct Resource {
-  std::string name;                 // "node.port" of its first writer
+  std::string name;  // "node.port" of its first writer
   bool is_buffer = false;
   ImageShape image;
   BufferShape buffer;
   VkImageUsageFlags image_usage = 0;
   VkBufferUsageFlags buffer_usage = 0;
-  bool host_visible = false;        // read by the host
-  bool history = false;             // two copies, swapped every frame; never aliased
-  bool exported = false;            // graph output or capture: never aliased
-  std::optional<std::array<float, 4>> constant;  // folded: a 1x1 image of this value, filled once
-  VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;  // constants, both copies of history: before frame 0
-  uint32_t first = 0, last = 0;     // plan positions of first and last use (a loop's whole range when inside one)
-  uint64_t offset = 0, size = 0;    // place in the transient heap; size 0: has memory of its own
+  bool host_visible = false;                     // read by the host
+  bool history = false;                          // two copies, swapped every frame; never aliased
+  bool exported = false;                         // graph output or capture: never aliased
+  std::optional<std::array<float, 4>> constant;  // folded: 1x1 (layers kept), filled once
+  // of constants and of both copies of history: to be in before frame 0
+  VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  // plan positions of first and last use (a loop's whole range when inside one)
+  uint32_t first = 0, last = 0;
+  uint64_t offset = 0, size = 0;  // place in the transient heap; size 0: has memory of its own
 };
 
 struct Barrier {
   uint32_t resource = 0;
   Use before, after;
-  bool discard = false;             // contents undefined before (first use of aliased or transient memory)
-  bool once = false;                // in a loop's body: only in the first turn (later ones: repeat_barriers)
-  bool previous = false;            // of the copy of the frame before (Resource::history)
+  bool discard = false;   // contents undefined before (first use of aliased or transient memory)
+  bool once = false;      // in a loop's body: only in the first turn (later ones: repeat_barriers)
+  bool previous = false;  // of the copy of the frame before (Resource::history)
 };
 
 struct PlanNode {
@@ -58,17 +60,17 @@ struct PlanNode {
   std::shared_ptr<Pass> pass;
   Declaration declaration;
   Params params;
-  std::map<std::string, uint32_t> resources;  // port -> index into Plan::resources
+  std::map<std::string, uint32_t> resources;    // port -> index into Plan::resources
   std::map<std::string, bool> constant_inputs;  // inputs that are folded constants
   std::map<std::string, bool> previous_inputs;  // inputs that read the copy of the frame before (history)
-  std::vector<Barrier> barriers;    // one batch, before the pass
+  std::vector<Barrier> barriers;                // one batch, before the pass
 };
 
 // [first, last) of Plan::nodes, submitted together; the host waits at its end when `host_wait`.
 struct Segment {
   uint32_t first = 0, last = 0;
   bool host_wait = false;
-  std::string reason;               // which host read cuts here
+  std::string reason;                 // which host read cuts here
   std::vector<Barrier> end_barriers;  // after its last pass: makes what the host reads visible to it
 };
 
@@ -77,29 +79,34 @@ struct LoopPlan {
   uint32_t first_segment = 0, last_segment = 0;  // [first, last) of Plan::segments
   uint32_t controller = 0;                       // index into Plan::nodes
   uint32_t max = 1;
-  // Before the second and later turns. The body's own barriers are then recorded again, except those marked once.
+  // Before the second and later turns; the body's own barriers are then recorded again, except those marked
+  // once.
   std::vector<Barrier> repeat_barriers;
 };
 
-struct LeftOut { std::string id, type, reason; };
+struct LeftOut {
+  std::string id, type, reason;
+};
 
 struct Plan {
-  std::vector<PlanNode> nodes;      // in execution order
+  std::vector<PlanNode> nodes;  // in execution order
   std::vector<Resource> resources;
   std::vector<Segment> segments;
   std::vector<LoopPlan> loops;
-  std::vector<Barrier> final_barriers;           // outputs to transfer_read for capture
-  std::map<std::string, uint32_t> outputs;       // graph output -> resource
-  std::map<std::string, uint32_t> captures;      // "node.port" -> resource
+  std::vector<Barrier> final_barriers;       // outputs to transfer_read for capture
+  std::map<std::string, uint32_t> outputs;   // graph output -> resource
+  std::map<std::string, uint32_t> captures;  // "node.port" -> resource
   std::vector<LeftOut> left_out;
   uint64_t heap_bytes = 0, heap_bytes_without_aliasing = 0;
 };
 
-struct MemoryNeed { uint64_t size = 0, alignment = 1; };
+struct MemoryNeed {
+  uint64_t size = 0, alignment = 1;
+};
 struct CompileOptions {
   bool alias = true;
-  bool keep_all = false;                         // do not ask need(); still culls what no output reaches
-  std::vector<std::string> captures;             // "node.port" kept and readable
+  bool keep_all = false;              // do not ask need(); still culls what no output reaches
+  std::vector<std::string> captures;  // "node.port" kept and readable
   // Memory a resource takes on the device; the default counts texels (tests, `gnomon check`).
   std::function<MemoryNeed(const Resource&)> memory;
 };

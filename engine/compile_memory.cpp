@@ -94,7 +94,10 @@ void find_lifetimes(Plan& plan, const std::vector<LoopRange>& loops) {
   for (uint32_t position = 0; position < plan.nodes.size(); ++position) {
     uint32_t first = position, last = position;
     for (const LoopRange& loop : loops)
-      if (position >= loop.first && position < loop.last) first = loop.first, last = loop.last - 1;
+      if (position >= loop.first && position < loop.last) {
+        first = loop.first;
+        last = loop.last - 1;
+      }
     for (const auto& [port, resource] : plan.nodes[position].resources) {
       bool known = used[resource];
       extend(plan.resources[resource], known, first, last);

@@ -157,6 +157,8 @@ void Context::render(const Targets& targets, const std::function<void()>& body) 
     stencil = image.aspect() & VK_IMAGE_ASPECT_STENCIL_BIT;
     depth = attachment(target_view(image, targets.layer), layout_of(node_, targets.depth->port, image.shape().format),
                        targets.depth->clear.has_value());
+    const Access access = node_.declaration.find(targets.depth->port)->access;
+    if (!has(access, Access::depth)) depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;  // planned as a read
     depth.clearValue.depthStencil = {targets.depth->clear.value_or(0.0f), targets.depth->clear_stencil};
   }
   VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
@@ -190,7 +192,8 @@ void Context::bind_geometry() {
 }
 
 void Context::draw(const Draw& draw, uint32_t instances) {
-  vkCmdPushConstants(commands_, state_.pipeline_layout.get(), VK_SHADER_STAGE_ALL, 0, 4, &draw.instance);
+  const uint32_t indices[] = {draw.instance, draw.material};
+  vkCmdPushConstants(commands_, state_.pipeline_layout.get(), VK_SHADER_STAGE_ALL, 0, sizeof(indices), indices);
   vkCmdDrawIndexed(commands_, draw.index_count, instances, draw.first_index, draw.vertex_offset, 0);
 }
 

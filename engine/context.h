@@ -27,6 +27,7 @@ struct NodeState {
   Handle<VkDescriptorSetLayout> set_layout;
   Handle<VkPipelineLayout> pipeline_layout;
   VkDescriptorSet set = VK_NULL_HANDLE;
+  VkDescriptorSet other_set = VK_NULL_HANDLE;  // with the copies of history exchanged; swapped every frame
   Buffer parameters;
   std::string preamble;
 };

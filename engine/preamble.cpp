@@ -85,7 +85,9 @@ std::vector<ShaderPort> shader_ports(const Declaration& declaration) {
 }
 
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs) {
-  std::string text;
+  // Constants rather than loads: drivers unroll loops over them and keep loads in those loops uniform.
+  std::string text = fmt::format("#define LIGHT_COUNT {}\n#define FACE_COUNT {}\n", declaration.setting().lights,
+                                 declaration.setting().map_faces);
   const auto shown = shader_ports(declaration);
   for (const ShaderPort& port : shown) {
     text += fmt::format("#define HAS_{} 1\n", upper(port.port->name));

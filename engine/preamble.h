@@ -19,7 +19,7 @@ std::vector<ShaderPort> shader_ports(const Declaration& declaration);
 
 // Text: one declaration per port, named as the port. Sampled images `x` get `x_at(ivec2)` (arrays: `x_at(ivec2,
 // int layer)`), which read the single texel of an input that was folded to a constant. Integer and number parameters are
-// `params.name`.
+// `params.name`. LIGHT_COUNT and FACE_COUNT are the scene's.
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs);
 
 // Flags: NAME 0 or 1. Choices: NAME = index of the chosen, and NAME_CHOICE for each possible one.

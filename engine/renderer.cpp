@@ -33,6 +33,48 @@ MemoryNeed device_need(const std::shared_ptr<Device>& device, const Resource& r)
   return {need.size, std::max(need.alignment, granularity)};
 }
 
+Physical make_physical(const std::shared_ptr<Device>& device, const Resource& r, bool own_memory) {
+  Physical physical;
+  if (r.is_buffer) {
+    const uint64_t bytes = std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16);  // Vulkan has no empty buffers
+    const VkBufferUsageFlags fill = r.history ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
+    physical.buffer =
+        Buffer(device, bytes, r.buffer_usage | fill, r.host_visible ? Place::host : Place::device, own_memory);
+  } else {
+    const VkImageUsageFlags fill = r.constant || r.history ? VK_IMAGE_USAGE_TRANSFER_DST_BIT : 0;
+    physical.image = GpuImage(device, r.image, r.image_usage | fill, own_memory);
+  }
+  return physical;
+}
+
+void change_layout(VkCommandBuffer commands, const GpuImage& image, VkImageLayout from, VkImageLayout to) {
+  VkImageMemoryBarrier2 b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+  b.srcStageMask = b.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  b.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  b.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  b.oldLayout = from, b.newLayout = to;
+  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  b.image = image.handle();
+  b.subresourceRange = {image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  info.imageMemoryBarrierCount = 1;
+  info.pImageMemoryBarriers = &b;
+  vkCmdPipelineBarrier2(commands, &info);
+}
+
+void clear_image(VkCommandBuffer commands, const GpuImage& image, const std::array<float, 4>& value, VkImageLayout then) {
+  constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  const VkImageSubresourceRange all{image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  const VkClearColorValue color{{value[0], value[1], value[2], value[3]}};
+  const VkClearDepthStencilValue depth{value[0], 0};
+  change_layout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, kLayout);
+  if (is_depth(image.shape().format))
+    vkCmdClearDepthStencilImage(commands, image.handle(), kLayout, &depth, 1, &all);
+  else
+    vkCmdClearColorImage(commands, image.handle(), kLayout, &color, 1, &all);
+  if (then != VK_IMAGE_LAYOUT_UNDEFINED) change_layout(commands, image, kLayout, then);
+}
+
 void add_image_barrier(std::vector<VkImageMemoryBarrier2>& out, const Barrier& b, const GpuImage& image) {
   VkImageMemoryBarrier2 v{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
   v.srcStageMask = b.before.stages, v.srcAccessMask = b.before.access;
@@ -62,18 +104,20 @@ struct Renderer::Impl {
   void make_resources();
   void make_nodes();
   void make_node(uint32_t index);
-  void fill_constants();
+  void fill_initial();
+  void swap_history();
   void prepare();
+  const Physical& physical_at(const PlanNode& node, const std::string& port) const;
   void write_set(const PlanNode& node, NodeState& state);
 
   FrameTiming render(TimingMode mode);
   void run_segments(uint32_t first, uint32_t last, uint32_t iteration, TimingMode mode, FrameTiming& timing);
-  void submit_range(uint32_t first_node, uint32_t last_node, uint32_t iteration, bool repeat, bool host_wait,
-                    TimingMode mode, FrameTiming& timing);
+  void submit(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode, FrameTiming& timing);
+  void record(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode, std::vector<double>& cpu_ms);
+  void execute(const Segment& segment);
   void run_loop(const LoopPlan& loop, TimingMode mode, FrameTiming& timing);
-  void barriers(VkCommandBuffer commands, const std::vector<Barrier>& list) const;
+  void barriers(VkCommandBuffer commands, const std::vector<Barrier>& list, bool first_turn = true) const;
   HostView host_view(const PlanNode& node, uint32_t iteration) const;
-  bool is_last_node(uint32_t node) const { return node == plan.nodes.size(); }
 
   std::shared_ptr<Device> device;
   std::shared_ptr<const Scene> scene;
@@ -81,7 +125,9 @@ struct Renderer::Impl {
   GpuScene gpu_scene;
   Plan plan;
   Memory heap;
-  std::vector<Physical> resources;  // after heap: destroyed first
+  // After heap, so destroyed first. `previous`: a history resource's copy of the frame before; empty for others.
+  std::vector<Physical> resources, previous;
+  bool has_history = false;
   std::vector<NodeState> nodes;
   Handle<VkDescriptorPool> pool;
   Handle<VkPipelineCache> cache;
@@ -131,7 +177,7 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
 
   make_resources();
   make_nodes();
-  fill_constants();
+  fill_initial();
   prepare();
 }
 
@@ -139,17 +185,14 @@ Renderer::Impl::~Impl() { vkDeviceWaitIdle(device->handle()); }
 
 void Renderer::Impl::make_resources() {
   resources.resize(plan.resources.size());
+  previous.resize(plan.resources.size());
   uint32_t types = ~0u;
   for (size_t i = 0; i < resources.size(); ++i) {
     const Resource& r = plan.resources[i];
     const bool own = r.size == 0;
-    if (r.is_buffer) {
-      const uint64_t bytes = std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16);
-      resources[i].buffer = Buffer(device, bytes, r.buffer_usage, r.host_visible ? Place::host : Place::device, own);
-    } else {
-      const VkImageUsageFlags fill = r.constant ? VK_IMAGE_USAGE_TRANSFER_DST_BIT : 0;
-      resources[i].image = GpuImage(device, r.image, r.image_usage | fill, own);
-    }
+    resources[i] = make_physical(device, r, own);
+    if (r.history) previous[i] = make_physical(device, r, own);
+    has_history = has_history || r.history;
     if (!own) types &= (r.is_buffer ? resources[i].buffer.requirements() : resources[i].image.requirements()).memoryTypeBits;
   }
   if (plan.heap_bytes == 0) return;
@@ -170,10 +213,11 @@ void Renderer::Impl::make_nodes() {
       else if (has(shown.port->access, Access::sampled)) ++images;
       else ++storage_images;
     }
-  const uint32_t count = uint32_t(plan.nodes.size()) + 1;
-  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, images},
-                                        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage_images},
-                                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, buffers},
+  const uint32_t copies = has_history ? 2 : 1;
+  const uint32_t count = copies * (uint32_t(plan.nodes.size()) + 1);
+  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, copies * images},
+                                        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copies * storage_images},
+                                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, copies * buffers},
                                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count}};
   VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   info.maxSets = count;
@@ -217,12 +261,29 @@ void Renderer::Impl::make_node(uint32_t index) {
   VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool.get(), 1, &set_layout};
   check(vkAllocateDescriptorSets(device->handle(), &allocate, &state.set), "vkAllocateDescriptorSets");
   write_set(node, state);
+  if (!has_history) return;
+  // The other set is what this one would be with the two copies of history exchanged.
+  std::swap(resources, previous);
+  std::swap(state.set, state.other_set);
+  check(vkAllocateDescriptorSets(device->handle(), &allocate, &state.set), "vkAllocateDescriptorSets");
+  write_set(node, state);
+  std::swap(resources, previous);
+  std::swap(state.set, state.other_set);
+}
+
+// While the other set is written the two lists are exchanged; what has no second copy is in one of them only.
+const Physical& Renderer::Impl::physical_at(const PlanNode& node, const std::string& port) const {
+  const uint32_t index = node.resources.at(port);
+  const auto back = node.previous_inputs.find(port);
+  const bool before = back != node.previous_inputs.end() && back->second;
+  const Physical &first = before ? previous[index] : resources[index], &second = before ? resources[index] : previous[index];
+  return first.image || first.buffer ? first : second;
 }
 
 void Renderer::Impl::write_set(const PlanNode& node, NodeState& state) {
   const auto shown = shader_ports(node.declaration);
   for (const ShaderPort& s : shown) {
-    const Physical& physical = resources[node.resources.at(s.port->name)];
+    const Physical& physical = physical_at(node, s.port->name);
     VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, state.set, s.binding, 0, 1};
     w.descriptorType = descriptor_type(*s.port);
     VkDescriptorImageInfo image{sampler.get(), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED};
@@ -245,26 +306,27 @@ void Renderer::Impl::write_set(const PlanNode& node, NodeState& state) {
   vkUpdateDescriptorSets(device->handle(), 1, &w, 0, nullptr);
 }
 
-// Folded constants are cleared once and stay in TRANSFER_DST layout until their first barrier of the first frame.
-void Renderer::Impl::fill_constants() {
+// Folded constants have their value and both copies of a history image are zero before the first frame.
+void Renderer::Impl::fill_initial() {
   OneShot once(device);
   for (size_t i = 0; i < resources.size(); ++i) {
     const Resource& r = plan.resources[i];
-    if (!r.constant) continue;
-    const GpuImage& image = resources[i].image;
-    const VkImageSubresourceRange range{image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
-    Barrier to_clear{uint32_t(i), {}, {VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL}, true};
-    barriers(once.commands(), {to_clear});
-    const auto& v = *r.constant;
-    const VkClearColorValue color{{v[0], v[1], v[2], v[3]}};
-    const VkClearDepthStencilValue depth{v[0], 0};
-    if (is_depth(r.image.format))
-      vkCmdClearDepthStencilImage(once.commands(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &depth, 1, &range);
-    else
-      vkCmdClearColorImage(once.commands(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &color, 1, &range);
+    if (!r.constant && !r.history) continue;
+    const auto value = r.constant.value_or(std::array<float, 4>{});
+    for (const Physical* copy : {&resources[i], &previous[i]}) {
+      if (copy->image) clear_image(once.commands(), copy->image, value, r.initial_layout);
+      if (copy->buffer) vkCmdFillBuffer(once.commands(), copy->buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+    }
   }
   once.submit_and_wait();
+}
+
+// The copies of the frame before become the ones to write.
+void Renderer::Impl::swap_history() {
+  if (!has_history) return;
+  for (size_t i = 0; i < resources.size(); ++i)
+    if (plan.resources[i].history) std::swap(resources[i], previous[i]);
+  for (NodeState& state : nodes) std::swap(state.set, state.other_set);
 }
 
 void Renderer::Impl::prepare() {
@@ -276,15 +338,16 @@ void Renderer::Impl::prepare() {
   }
 }
 
-void Renderer::Impl::barriers(VkCommandBuffer to, const std::vector<Barrier>& list) const {
-  if (list.empty()) return;
+void Renderer::Impl::barriers(VkCommandBuffer to, const std::vector<Barrier>& list, bool first_turn) const {
   std::vector<VkImageMemoryBarrier2> images;
   std::vector<VkMemoryBarrier2> memory;
   for (const Barrier& b : list) {
-    const Physical& physical = resources[b.resource];
+    if (b.once && !first_turn) continue;
+    const Physical& physical = b.previous ? previous[b.resource] : resources[b.resource];
     if (physical.image) add_image_barrier(images, b, physical.image);
     if (!physical.image || b.discard) memory.push_back(memory_barrier(b));
   }
+  if (memory.empty() && images.empty()) return;
   VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
   info.memoryBarrierCount = uint32_t(memory.size());
   info.pMemoryBarriers = memory.data();
@@ -296,6 +359,7 @@ void Renderer::Impl::barriers(VkCommandBuffer to, const std::vector<Barrier>& li
 FrameTiming Renderer::Impl::render(TimingMode mode) {
   FrameTiming timing;
   const auto start = Clock::now();
+  if (frame > 0) swap_history();
   gpu_scene.update(settings.camera, settings.width, settings.height, settings.reversed_z, frame++);
   uint32_t segment = 0;
   while (segment < plan.segments.size()) {
@@ -321,8 +385,7 @@ FrameTiming Renderer::Impl::render(TimingMode mode) {
 void Renderer::Impl::run_segments(uint32_t first, uint32_t last, uint32_t iteration, TimingMode mode,
                                   FrameTiming& timing) {
   for (uint32_t s = first; s < last; ++s)
-    submit_range(plan.segments[s].first, plan.segments[s].last, iteration, iteration > 0 && s == first,
-                 plan.segments[s].host_wait, mode, timing);
+    submit(plan.segments[s], iteration, iteration > 0 && s == first, mode, timing);
 }
 
 void Renderer::Impl::run_loop(const LoopPlan& loop, TimingMode mode, FrameTiming& timing) {
@@ -341,48 +404,58 @@ HostView Renderer::Impl::host_view(const PlanNode& node, uint32_t iteration) con
           }};
 }
 
-void Renderer::Impl::submit_range(uint32_t first, uint32_t last, uint32_t iteration, bool repeat, bool host_wait,
-                                  TimingMode mode, FrameTiming& timing) {
-  const auto record_start = Clock::now();
+void Renderer::Impl::record(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode,
+                            std::vector<double>& cpu_ms) {
   check(vkResetCommandPool(device->handle(), command_pool.get(), 0), "vkResetCommandPool");
   VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
   const bool stamped = mode != TimingMode::none, alone = mode == TimingMode::isolated;
   if (stamped) stamps->reset(commands), stamps->stamp(commands, alone);
-  if (repeat)
-    for (const LoopPlan& loop : plan.loops)
-      if (plan.segments[loop.first_segment].first == first) barriers(commands, loop.repeat_barriers);
-  std::vector<double> cpu_ms;
-  for (uint32_t i = first; i < last; ++i) {
-    const auto pass_start = Clock::now();
-    // A loop's second turn finds its resources as the first one left them: repeat_barriers took care of the entry.
-    barriers(commands, plan.nodes[i].barriers);
+  for (const LoopPlan& loop : plan.loops)
+    if (repeat && plan.segments[loop.first_segment].first == segment.first) barriers(commands, loop.repeat_barriers);
+  for (uint32_t i = segment.first; i < segment.last; ++i) {
+    const auto start = Clock::now();
+    barriers(commands, plan.nodes[i].barriers, iteration == 0);
     Context context(commands, gpu_scene, plan.nodes[i], nodes[i], resources, iteration);
     plan.nodes[i].pass->record(context);
     if (stamped) stamps->stamp(commands, alone);
-    cpu_ms.push_back(ms_since(pass_start));
+    cpu_ms.push_back(ms_since(start));
   }
-  if (is_last_node(last)) barriers(commands, plan.final_barriers);
+  barriers(commands, segment.end_barriers);
+  if (segment.last == plan.nodes.size()) barriers(commands, plan.final_barriers);
   check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
-  timing.record_ms += ms_since(record_start);
+}
 
-  VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands;
+void Renderer::Impl::execute(const Segment& segment) {
+  VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &commands;
   const VkFence done = fence.get();
   check(vkResetFences(device->handle(), 1, &done), "vkResetFences");
-  check(vkQueueSubmit(device->queue(), 1, &submit, done), "vkQueueSubmit");
-  const auto wait_start = Clock::now();
+  check(vkQueueSubmit(device->queue(), 1, &info, done), "vkQueueSubmit");
   const VkResult waited = vkWaitForFences(device->handle(), 1, &done, VK_TRUE, kFenceTimeoutNs);
-  if (waited == VK_TIMEOUT) fail("the device did not finish a frame in ten minutes", {}, plan.nodes[first].id);
+  if (waited == VK_TIMEOUT) fail("the device did not finish a frame in ten minutes", {}, plan.nodes[segment.first].id);
   check(waited, "vkWaitForFences");
+}
+
+void Renderer::Impl::submit(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode,
+                            FrameTiming& timing) {
+  std::vector<double> cpu_ms;
+  const auto record_start = Clock::now();
+  record(segment, iteration, repeat, mode, cpu_ms);
+  timing.record_ms += ms_since(record_start);
+  const auto wait_start = Clock::now();
+  execute(segment);
   const double wait_ms = ms_since(wait_start);
-  if (!stamped) return;
+  if (mode == TimingMode::none) return;
   const auto at = stamps->read();
-  for (uint32_t i = first; i < last; ++i)
-    timing.passes.push_back({plan.nodes[i].id, plan.nodes[i].type, iteration, at[i - first + 1] - at[i - first],
-                             cpu_ms[i - first], host_wait && i + 1 == last ? wait_ms : 0.0});
+  for (uint32_t i = segment.first; i < segment.last; ++i) {
+    const uint32_t k = i - segment.first;
+    const bool waited_for = segment.host_wait && i + 1 == segment.last;
+    timing.passes.push_back({plan.nodes[i].id, plan.nodes[i].type, iteration, at[k + 1] - at[k], cpu_ms[k],
+                             waited_for ? wait_ms : 0.0});
+  }
 }
 
 Renderer::Renderer(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, const Graph& graph,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace gnomon {
 namespace {
@@ -46,6 +47,35 @@ ImageShape declare_receiver(Declaration& d) {
   d.number("bias_normal", standard.normal, 0, 1000, "texels",
            "shift along the geometric normal, times the sine of the light's angle to it (normal_offset)");
   return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
+}
+
+void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines) {
+  for (const Light& light : e.scene().lights) {
+    const bool point = light.type == LightType::point;
+    Pipeline& pipeline = point ? six_faces_ : one_face_;
+    if (pipeline.handle) continue;
+    Defines all = defines;
+    if (point) all.emplace_back("SIX_FACES", "1");
+    pipeline = e.compute(file, all);
+  }
+}
+
+const Pipeline& PerLight::ready(Context& c, uint32_t light) const {
+  const auto& faces = c.scene().faces();
+  uint32_t first = 0;
+  while (first < faces.size() && faces[first].light != light) ++first;
+  const bool point = c.scene().scene().lights[light].type == LightType::point;
+  const Pipeline& pipeline = point ? six_faces_ : one_face_;
+  c.push(pipeline, std::array<uint32_t, 2>{light, first});
+  return pipeline;
+}
+
+void PerLight::dispatch_over(Context& c, uint32_t light, Extent pixels) const {
+  c.dispatch_over(ready(c, light), pixels);
+}
+
+void PerLight::dispatch_indirect(Context& c, uint32_t light, const std::string& port) const {
+  c.dispatch_indirect(ready(c, light), port);
 }
 
 void report_bias(Environment& e) {

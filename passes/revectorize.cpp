@@ -17,34 +17,42 @@ class Revectorize : public Pass {
     d.integer("max_size", 16, 1, 1024, "texels", "longest walk along a silhouette, in each direction");
     d.number("epsilon", 1e-3, 0, 1, "depth range", "kept_lowering: how near the map is lowered for, and by how much");
     d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
-    const uint64_t pixels = uint64_t(visibility.extent.width) * visibility.extent.height * visibility.layers;
+    const uint64_t pixels = uint64_t(visibility.extent.width) * visibility.extent.height;
     d.transient_buffer("silhouette", Access::storage_read | Access::storage_write, {pixels, 4, "uint"},
-                       "pixels on the silhouette, as (light * height + y) * width + x");
+                       "pixels on one light's silhouette, as y * width + x");
     d.transient_buffer("arguments",
                        Access::storage_read | Access::storage_write | Access::indirect | Access::transfer_write,
                        {4, 4, "uint"}, "workgroups of the walk (x, y, z) and the number of listed pixels");
   }
 
   void prepare(Environment& e) override {
-    find_ = e.compute("revectorize_find.glsl");
-    walk_ = e.compute("revectorize_walk.glsl");
+    find_.prepare(e, "revectorize_find.glsl");
+    walk_.prepare(e, "revectorize_walk.glsl");
     report_bias(e);
   }
 
   void record(Context& c) override {
+    const ImageShape shape = c.shape("visibility");
+    for (uint32_t light = 0; light < shape.layers; ++light) {
+      if (light > 0) c.own_barrier();  // the list is used again
+      clear_list(c);
+      c.own_barrier();
+      find_.dispatch_over(c, light, shape.extent);
+      c.own_barrier();
+      walk_.dispatch_indirect(c, light, "arguments");
+    }
+  }
+
+ private:
+  // No workgroups in x, one in y and z; no pixels.
+  static void clear_list(Context& c) {
     constexpr uint64_t kWord = 4;  // bytes
     c.fill("arguments", 0, 0, kWord);
     c.fill("arguments", 1, kWord, 2 * kWord);
     c.fill("arguments", 0, 3 * kWord, kWord);
-    c.own_barrier();
-    const ImageShape shape = c.shape("visibility");
-    c.dispatch_over(find_, shape.extent, shape.layers);
-    c.own_barrier();
-    c.dispatch_indirect(walk_, "arguments");
   }
 
- private:
-  Pipeline find_, walk_;
+  PerLight find_, walk_;
 };
 
 GNOMON_PASS("revectorize", Revectorize);

@@ -13,16 +13,16 @@ class ShadowTest : public Pass {
     d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
   }
   void prepare(Environment& e) override {
-    pipeline_ = e.compute("shadow_test.glsl");
+    test_.prepare(e, "shadow_test.glsl");
     report_bias(e);
   }
   void record(Context& c) override {
     const ImageShape shape = c.shape("visibility");
-    c.dispatch_over(pipeline_, shape.extent, shape.layers);
+    for (uint32_t light = 0; light < shape.layers; ++light) test_.dispatch_over(c, light, shape.extent);
   }
 
  private:
-  Pipeline pipeline_;
+  PerLight test_;
 };
 
 GNOMON_PASS("shadow_test", ShadowTest);

@@ -2,7 +2,7 @@
 #include "frame.glsl"
 #include "lib/octahedral.glsl"
 
-layout(push_constant) uniform Push { uint instance; } push;
+layout(push_constant) uniform Push { uint instance, material; } push;
 layout(set = 2, binding = 0) uniform sampler2D base_color_texture;
 layout(location = 0) in vec3 in_relative;
 layout(location = 1) in vec2 in_uv;
@@ -21,7 +21,7 @@ vec3 geometric_normal(Instance instance) {
 
 void main() {
   Instance instance = instances[push.instance];
-  Material material = materials[instance.info.y];
+  Material material = materials[push.material];
   vec4 color = material.base_color * in_color * texture(base_color_texture, in_uv);
 #ifdef MASKED
   if (color.a < material.alpha.x) discard;

@@ -7,22 +7,22 @@ layout(local_size_x = 8, local_size_y = 8) in;
 const uint WALK_GROUP = 64u;  // workgroup size of revectorize_walk
 
 void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID);
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = imageSize(visibility).xy;
-  if (any(greaterThanEqual(at.xy, size))) return;
+  if (any(greaterThanEqual(at, size))) return;
   Query query;
-  int state = make_query(at.xy, at.z, query);
+  int state = make_query(at, query);
   ivec2 texel = ivec2(floor(query.position));
   bool lit = is_lit(query, texel);
   bool same = is_lit(query, texel + ivec2(-1, 0)) == lit && is_lit(query, texel + ivec2(1, 0)) == lit &&
               is_lit(query, texel + ivec2(0, -1)) == lit && is_lit(query, texel + ivec2(0, 1)) == lit;
   bool inside = state == PIXEL_INSIDE;
-  imageStore(visibility, at, vec4(inside ? float(lit) : unmapped_visibility(state)));
+  imageStore(visibility, ivec3(at, push.light), vec4(inside ? float(lit) : unmapped_visibility(state)));
   // The conservative form works on the lit side only.
   bool wanted = MODE == MODE_CONSERVATIVE ? lit : true;
   if (inside && !same && wanted) {
     uint slot = atomicAdd(arguments[3], 1u);
     if (slot % WALK_GROUP == 0u) atomicMax(arguments[0], slot / WALK_GROUP + 1u);
-    silhouette[slot] = (at.z * size.y + at.y) * size.x + at.x;
+    silhouette[slot] = at.y * size.x + at.x;
   }
 }

@@ -28,8 +28,8 @@ void main() {
   if (slot >= arguments[3]) return;
   ivec2 size = imageSize(visibility).xy;
   uint index = silhouette[slot];
-  ivec3 at = ivec3(index % size.x, index / size.x % size.y, index / (size.x * size.y));
-  make_query(at.xy, at.z, query);
+  ivec2 at = ivec2(index % size.x, index / size.x);
+  make_query(at, query);
   ivec2 texel = ivec2(floor(query.position));
   vec2 c = fract(query.position);  // (3.1)
   bool lit = is_lit(query, texel);
@@ -43,5 +43,5 @@ void main() {
 #else
   v = any(d) ? rbsm_filtered(lit, rbsm_relative_position_filtered(distances, params.max_size)) : float(lit);
 #endif
-  imageStore(visibility, at, vec4(v));
+  imageStore(visibility, ivec3(at, push.light), vec4(v));
 }

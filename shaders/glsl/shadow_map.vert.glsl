@@ -13,7 +13,11 @@ layout(location = 1) out float out_depth;
 #endif
 
 void main() {
+#if FACE_COUNT == 1
+  LightFace face = faces[0];
+#else
   LightFace face = faces[gl_InstanceIndex];
+#endif
   vec4 relative = instances[push.instance].relative_from_object * vec4(in_position, 1.0);
   gl_Position = face.clip_from_relative * vec4(relative.xyz, 1.0);
   gl_Layer = gl_InstanceIndex;

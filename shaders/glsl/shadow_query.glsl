@@ -4,6 +4,10 @@
 #include "lib/octahedral.glsl"
 #include "lib/receiver_plane.glsl"
 
+// A dispatch is for one light. Its index, and the only face of a light that has one, come as push constants, so that every
+// load that depends on them alone is uniform.
+layout(push_constant) uniform Push { uint light, face; } push;
+
 const int PIXEL_BACKGROUND = 0;  // no geometry: lit
 const int PIXEL_AWAY = 1;        // the geometric normal faces away from the light: in shadow, whatever the map says
 const int PIXEL_OUTSIDE = 2;     // outside the map: lit, the light's own falloff decides
@@ -28,15 +32,19 @@ float bias_world(float texel_size, float slope) {
 #endif
 }
 
-int make_query(ivec2 pixel, uint light_index, out Query query) {
+int make_query(ivec2 pixel, out Query query) {
   float device_depth = depth_at(pixel).x;
   vec3 n = octahedral_decode(geometric_at(pixel).xy);
   vec3 p = relative_position(pixel, device_depth);
-  Light light = lights[light_index];
+  Light light = lights[push.light];
   float light_distance;
   vec3 l = to_light(light, p, light_distance);
   float facing = dot(n, l);
+#ifdef SIX_FACES
   query.face = int(face_of(light, p));
+#else
+  query.face = int(push.face);
+#endif
   LightFace face = faces[query.face];
   vec3 q = face_space(face, vec4(p, 1.0));
   float size = map_size();
