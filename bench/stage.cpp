@@ -54,7 +54,7 @@ class DeviceStage final : public Stage {
 
 }  // namespace
 
-StageMaker device_stages(std::shared_ptr<Device> device, fs::path cache, Tell progress) {
+StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& cache, const Tell& progress) {
   return [=](const Suite& suite, const fs::path& file, Extent size) -> std::unique_ptr<Stage> {
     auto scene = std::make_shared<const Scene>(load_scene(file));
     if (suite.camera >= scene->cameras.size())

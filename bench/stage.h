@@ -12,7 +12,7 @@ namespace gnomon {
 
 // Each Stage loads the scene and traces its reference, or reads it from `cache`. `progress`: of the tracing,
 // 0..1 and the scene's name; may be empty.
-StageMaker device_stages(std::shared_ptr<Device> device, std::filesystem::path cache,
-                         std::function<void(double, const std::string&)> progress = {});
+StageMaker device_stages(const std::shared_ptr<Device>& device, const std::filesystem::path& cache,
+                         const std::function<void(double, const std::string&)>& progress = {});
 
 }  // namespace gnomon

@@ -13,15 +13,26 @@ double median_of_sorted(const std::vector<double>& sorted) {
   return n % 2 == 1 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
 }
 
-// Coverage of [x(rank), x(n + 1 - rank)], rank from 1: 1 - 2 P(B(n, 1/2) < rank). Through logarithms, so that
-// a large n does not underflow.
-double median_coverage(size_t n, size_t rank) {
-  double tail = 0;
-  for (size_t k = 0; k < rank; ++k) {
-    tail += std::exp(std::lgamma(double(n) + 1) - std::lgamma(double(k) + 1) -
-                     std::lgamma(double(n - k) + 1) - double(n) * std::log(2.0));
+// P(B(n, 1/2) = k), through logarithms, so that a large n does not underflow.
+double half_binomial(size_t n, size_t k) {
+  return std::exp(std::lgamma(double(n) + 1) - std::lgamma(double(k) + 1) - std::lgamma(double(n - k) + 1) -
+                  double(n) * std::log(2.0));
+}
+
+// The rank l, from 1, and coverage of the interval [x(l), x(n + 1 - l)].
+struct Interval {
+  size_t rank = 1;
+  double coverage = 0;
+};
+Interval median_interval(size_t n) {
+  double tail = half_binomial(n, 0);
+  Interval best{1, std::max(0.0, 1 - 2 * tail)};
+  for (size_t rank = 2; 2 * rank <= n; ++rank) {
+    tail += half_binomial(n, rank - 1);
+    if (1 - 2 * tail < 0.95) break;
+    best = {rank, 1 - 2 * tail};
   }
-  return std::max(0.0, 1 - 2 * tail);
+  return best;
 }
 
 }  // namespace
@@ -44,11 +55,10 @@ Summary summarise(std::span<const double> samples) {
   deviations.reserve(sorted.size());
   for (const double x : sorted) deviations.push_back(std::abs(x - summary.median));
   summary.mad = median(std::move(deviations));
-  size_t rank = 1;
-  while (2 * (rank + 1) <= summary.n && median_coverage(summary.n, rank + 1) >= 0.95) ++rank;
-  summary.low = sorted[rank - 1];
-  summary.high = sorted[summary.n - rank];
-  summary.coverage = median_coverage(summary.n, rank);
+  const Interval interval = median_interval(summary.n);
+  summary.low = sorted[interval.rank - 1];
+  summary.high = sorted[summary.n - interval.rank];
+  summary.coverage = interval.coverage;
   return summary;
 }
 

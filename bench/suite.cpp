@@ -288,9 +288,9 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
 Suite load_suite(const fs::path& file) { return parse_suite(read_whole(file), file); }
 
 fs::path find_suite(const std::string& name_or_file) {
-  const fs::path given(name_or_file);
+  fs::path given(name_or_file);
   if (fs::exists(given) || given.has_parent_path() || given.has_extension()) return given;
-  const fs::path named = resource_root() / "bench" / "suites" / (name_or_file + ".json");
+  fs::path named = resource_root() / "bench" / "suites" / (name_or_file + ".json");
   return fs::exists(named) ? named : given;
 }
 

@@ -130,7 +130,7 @@ std::string cell(const std::optional<double>& value, int digits) {
   return value && std::isfinite(*value) ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
-size_t column_width(const Column& column) { return std::max<size_t>(std::string(column.title).size(), 7); }
+size_t column_width(const Column& column) { return std::max<size_t>(std::string(column.title).size(), 8); }
 
 size_t technique_width(const Group& one) {
   size_t width = std::string("technique").size();

@@ -1,5 +1,7 @@
 #include "engine/gpu_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -154,21 +156,26 @@ void GpuScene::make_frame_set() {
     return Buffer(device_, std::max<uint64_t>(count * stride, 16), usage, Place::host);
   };
   frame_buffer_ = host(1, sizeof(FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  lights_ = host(scene_->lights.size(), sizeof(LightData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  faces_buffer_ = host(faces_.size(), sizeof(FaceData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  lights_ = host(scene_->lights.size(), sizeof(LightData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  faces_buffer_ = host(faces_.size(), sizeof(FaceData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   instances_ = host(scene_->instances.size(), sizeof(InstanceData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
 
   const Buffer* buffers[] = {&frame_buffer_, &lights_,           &faces_buffer_, &instances_,
                              &materials_,    &triangle_normals_, &positions_,    &indices_};
+  constexpr uint32_t kUniformBuffers = 3;  // frame, lights, faces; storage buffers follow
+  const uint64_t most = device_->limits().maxUniformBufferRange;
+  if (lights_.size() > most || faces_buffer_.size() > most)
+    fail(fmt::format("{} lights with {} shadow-map faces are more than '{}' can hold", scene_->lights.size(),
+                     faces_.size(), device_->info().name), scene_->file.string());
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < std::size(buffers); ++i)
-    bindings.push_back({i, i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+    bindings.push_back({i, i < kUniformBuffers ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
                         VK_SHADER_STAGE_ALL, nullptr});
   frame_layout_ = make_layout(device_, bindings);
   material_layout_ = make_layout(device_, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
                                                       VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}});
   const uint32_t materials = uint32_t(scene_->materials.size());
-  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kUniformBuffers},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 16},
                                         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, materials}};
   VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};

@@ -39,6 +39,19 @@ void print_error(const std::string& text) {
   }
 }
 
+// What was given where a command was expected: "unknown command 'rendr' (did you mean 'render'?)"; empty:
+// nothing was.
+std::string unknown_command(const CLI::App& app, int argc, const char* const* argv) {
+  const CLI::App* at = &app;
+  int given = 1;
+  for (; !at->get_subcommands().empty(); ++given) at = at->get_subcommands().front();
+  if (given >= argc || argv[given][0] == '-') return {};
+  std::vector<std::string> names;
+  for (const CLI::App* command : at->get_subcommands({})) names.push_back(command->get_name());
+  return to_string(
+      Problem{fmt::format("unknown command '{}'", argv[given]), {}, {}, did_you_mean(argv[given], names)});
+}
+
 int parse(CLI::App& app, int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
@@ -47,7 +60,10 @@ int parse(CLI::App& app, int argc, const char* const* argv) {
     app.exit(done);
     return exit_done;
   } catch (const CLI::ParseError& error) {
-    print_error(error.what());
+    const bool no_command = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr &&
+                            std::string(error.what()).find("subcommand") != std::string::npos;
+    const std::string unknown = no_command ? unknown_command(app, argc, argv) : std::string();
+    print_error(unknown.empty() ? error.what() : unknown);
     fmt::print(stderr, "Run 'gnomon --help' for the commands, 'gnomon COMMAND --help' for their options.\n");
     return exit_bad_input;
   }
@@ -135,7 +151,7 @@ const Camera& camera_of(const Scene& scene, uint32_t index) {
 }
 
 fs::path find_scene(const std::string& name_or_file) {
-  const fs::path given(name_or_file);
+  fs::path given(name_or_file);
   // A folder of the scene's name (images of it, say) is not meant.
   if (fs::is_regular_file(given)) return given;
   const fs::path folder = resource_root() / "assets" / "scenes";

@@ -21,7 +21,7 @@ fs::path topmost_missing(const fs::path& folder) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path folder) : folder_(fs::absolute(std::move(folder)).lexically_normal()) {
+OutputFolder::OutputFolder(const fs::path& folder) : folder_(fs::absolute(folder).lexically_normal()) {
   if (!folder_.has_filename()) folder_ = folder_.parent_path();
   staging_ = folder_ / fmt::format(".unfinished-{}", getpid());
   made_ = topmost_missing(folder_);

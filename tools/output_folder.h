@@ -11,7 +11,7 @@ namespace gnomon {
 // remains, nor does the folder when it was not there before. Error when the folder cannot be made or written.
 class OutputFolder {
  public:
-  explicit OutputFolder(std::filesystem::path folder);
+  explicit OutputFolder(const std::filesystem::path& folder);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;

@@ -36,8 +36,9 @@ struct Material {
   vec4 alpha;       // cutoff (0: opaque), 1 when double-sided
 };
 
-layout(set = 0, binding = 1, std430) readonly buffer Lights { Light lights[]; };
-layout(set = 0, binding = 2, std430) readonly buffer Faces { LightFace faces[]; };
+// Uniform buffers: a uniform index makes a uniform load, which software devices do once for all invocations.
+layout(set = 0, binding = 1, std140) uniform Lights { Light lights[LIGHT_COUNT]; };
+layout(set = 0, binding = 2, std140) uniform Faces { LightFace faces[FACE_COUNT]; };
 layout(set = 0, binding = 3, std430) readonly buffer Instances { Instance instances[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 5, std430) readonly buffer TriangleNormals { uint triangle_normals[]; };

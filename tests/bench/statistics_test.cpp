@@ -80,7 +80,7 @@ TEST(Statistics, ManySamplesDoNotUnderflow) {
   EXPECT_NEAR(summary.low, 2500 - 69.3, 2);
   EXPECT_NEAR(summary.high, 2500 + 69.3, 2);
   EXPECT_GE(summary.coverage, 0.95);
-  EXPECT_LT(summary.coverage, 0.952);
+  EXPECT_LT(summary.coverage, 0.9535);  // one rank less is 0.0033 of coverage less
 }
 
 // The stated coverage holds: of 4000 intervals from a skewed distribution (median ln 2) at least 95 % hold

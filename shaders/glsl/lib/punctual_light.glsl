@@ -4,8 +4,9 @@
 
 // 1/m^2; `range` 0: unlimited.
 float distance_falloff(float distance, float range) {
-  float window = range > 0.0 ? clamp(1.0 - pow(distance / range, 4.0), 0.0, 1.0) : 1.0;
-  return window / (distance * distance);
+  float squared = distance * distance, part = squared / max(range * range, 1e-12);
+  float window = range > 0.0 ? clamp(1.0 - part * part, 0.0, 1.0) : 1.0;
+  return window / squared;
 }
 
 // 1 inside the inner cone, 0 outside the outer one. `cosine`: between the spot's axis and the direction from it.
