@@ -289,7 +289,7 @@ Suite load_suite(const fs::path& file) { return parse_suite(read_whole(file), fi
 
 fs::path find_suite(const std::string& name_or_file) {
   fs::path given(name_or_file);
-  if (fs::exists(given) || given.has_parent_path() || given.has_extension()) return given;
+  if (fs::is_regular_file(given) || given.has_parent_path() || given.has_extension()) return given;
   fs::path named = resource_root() / "bench" / "suites" / (name_or_file + ".json");
   return fs::exists(named) ? named : given;
 }

@@ -81,20 +81,27 @@ void Environment::attach(const std::string& port, const Buffer& buffer) const {
   for (const ShaderPort& shown : shader_ports(node_.declaration)) {
     if (shown.port->name != port) continue;
     const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
-    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, state_.set, shown.binding, 0, 1};
-    write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    write.pBufferInfo = &info;
-    vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
+    for (const VkDescriptorSet set : {state_.set, state_.other_set}) {  // the other: of every second frame
+      if (!set) continue;
+      VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, shown.binding, 0, 1};
+      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+      write.pBufferInfo = &info;
+      vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
+    }
     return;
   }
   fail(fmt::format("pass '{}' has no buffer port '{}' that shaders see", node_.id, port));
 }
 
 Context::Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node, const NodeState& state,
-                 const std::vector<Physical>& resources, uint32_t iteration)
-    : commands_(commands), scene_(scene), node_(node), state_(state), resources_(resources), iteration_(iteration) {}
+                 const std::vector<Physical>& resources, const std::vector<Physical>& previous, uint32_t iteration)
+    : commands_(commands), scene_(scene), node_(node), state_(state), resources_(resources), previous_(previous),
+      iteration_(iteration) {}
 
-const Physical& Context::physical(const std::string& port) const { return physical_of(node_, resources_, port); }
+const Physical& Context::physical(const std::string& port) const {
+  const auto back = node_.previous_inputs.find(port);
+  return physical_of(node_, back != node_.previous_inputs.end() && back->second ? previous_ : resources_, port);
+}
 ImageShape Context::shape(const std::string& port) const { return physical(port).image.shape(); }
 const Buffer& Context::buffer(const std::string& port) const { return physical(port).buffer; }
 

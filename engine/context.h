@@ -101,8 +101,9 @@ struct ScenePipelines {
 
 class Context {
  public:
+  // `previous`: of resources with history, the copy of the frame before.
   Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node, const NodeState& state,
-          const std::vector<Physical>& resources, uint32_t iteration);
+          const std::vector<Physical>& resources, const std::vector<Physical>& previous, uint32_t iteration);
 
   VkCommandBuffer commands() const { return commands_; }
   const Params& params() const { return node_.params; }
@@ -140,7 +141,7 @@ class Context {
   const GpuScene& scene_;
   const PlanNode& node_;
   const NodeState& state_;
-  const std::vector<Physical>& resources_;
+  const std::vector<Physical>&resources_, &previous_;
   uint32_t iteration_;
 };
 

@@ -105,7 +105,9 @@ std::string preamble(const Declaration& declaration, const std::map<std::string,
   return text;
 }
 
-Defines parameter_defines(const Params& params) {
+// Here and below: a copy, because showing every parameter to the shaders is no look-up of the pass (never_read).
+Defines parameter_defines(const Params& of_pass) {
+  const Params params = of_pass;
   Defines defines;
   for (const ParamSpec& spec : params.specs()) {
     if (spec.type == ParamType::flag) defines.emplace_back(upper(spec.name), params.flag(spec.name) ? "1" : "0");
@@ -117,7 +119,8 @@ Defines parameter_defines(const Params& params) {
   return defines;
 }
 
-std::vector<std::byte> parameter_block(const Params& params) {
+std::vector<std::byte> parameter_block(const Params& of_pass) {
+  const Params params = of_pass;
   std::vector<std::byte> block;
   for (const ParamSpec& spec : params.specs()) {
     if (!in_block(spec)) continue;

@@ -378,7 +378,6 @@ FrameTiming Renderer::Impl::render(TimingMode mode) {
     }
   }
   timing.frame_ms = ms_since(start);
-  for (const PassTiming& pass : timing.passes) timing.gpu_ms += pass.gpu_ms;
   return timing;
 }
 
@@ -398,9 +397,9 @@ void Renderer::Impl::run_loop(const LoopPlan& loop, TimingMode mode, FrameTiming
 
 HostView Renderer::Impl::host_view(const PlanNode& node, uint32_t iteration) const {
   return {iteration, [this, &node](std::string_view port) -> std::span<const std::byte> {
-            const auto found = node.resources.find(std::string(port));
-            if (found == node.resources.end()) fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
-            return resources[found->second].buffer.bytes();
+            if (!node.resources.contains(std::string(port)))
+              fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
+            return physical_at(node, std::string(port)).buffer.bytes();
           }};
 }
 
@@ -417,7 +416,7 @@ void Renderer::Impl::record(const Segment& segment, uint32_t iteration, bool rep
   for (uint32_t i = segment.first; i < segment.last; ++i) {
     const auto start = Clock::now();
     barriers(commands, plan.nodes[i].barriers, iteration == 0);
-    Context context(commands, gpu_scene, plan.nodes[i], nodes[i], resources, iteration);
+    Context context(commands, gpu_scene, plan.nodes[i], nodes[i], resources, previous, iteration);
     plan.nodes[i].pass->record(context);
     if (stamped) stamps->stamp(commands, alone);
     cpu_ms.push_back(ms_since(start));
@@ -450,6 +449,7 @@ void Renderer::Impl::submit(const Segment& segment, uint32_t iteration, bool rep
   const double wait_ms = ms_since(wait_start);
   if (mode == TimingMode::none) return;
   const auto at = stamps->read();
+  timing.gpu_ms += at.back() - at.front();
   for (uint32_t i = segment.first; i < segment.last; ++i) {
     const uint32_t k = i - segment.first;
     const bool waited_for = segment.host_wait && i + 1 == segment.last;

@@ -1,3 +1,8 @@
+#include <csignal>
+
 #include "tools/cli.h"
 
-int main(int argc, char** argv) { return gnomon::run_cli(argc, argv); }
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error like a full disk
+  return gnomon::run_cli(argc, argv);
+}

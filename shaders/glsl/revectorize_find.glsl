@@ -13,9 +13,9 @@ void main() {
   Query query;
   int state = make_query(at, query);
   ivec2 texel = ivec2(floor(query.position));
-  bool lit = is_lit(query, texel);
-  bool same = is_lit(query, texel + ivec2(-1, 0)) == lit && is_lit(query, texel + ivec2(1, 0)) == lit &&
-              is_lit(query, texel + ivec2(0, -1)) == lit && is_lit(query, texel + ivec2(0, 1)) == lit;
+  bvec4 neighbours;
+  bool lit = is_lit_cross(query, texel, neighbours);
+  bool same = lit ? all(neighbours) : !any(neighbours);
   bool inside = state == PIXEL_INSIDE;
   imageStore(visibility, ivec3(at, push.light), vec4(inside ? float(lit) : unmapped_visibility(state)));
   // The conservative form works on the lit side only.

@@ -78,4 +78,20 @@ bool is_lit(Query query, ivec2 texel) {
   return receiver <= map_depth(query, texel);
 }
 
+// The same for a texel and its neighbours: x left, y right, z top, w bottom. Two gathers read what five fetches would; they
+// stand on corners between texels, where no rounding can choose other ones.
+bool is_lit_cross(Query query, ivec2 texel, out bvec4 neighbours) {
+  vec2 size = vec2(textureSize(shadow_map, 0).xy);
+  vec4 low = textureGather(shadow_map, vec3(vec2(texel) / size, query.face));       // (-1,0) (0,0) (0,-1) (-1,-1)
+  vec4 high = textureGather(shadow_map, vec3(vec2(texel + 1) / size, query.face));  // (0,1) (1,1) (1,0) (0,0)
+  vec2 centre = vec2(texel) + 0.5;
+  LightFace face = faces[query.face];
+  bool linear = ENCODING == ENCODING_LINEAR;
+  neighbours.x = receiver_depth(face, query.plane, centre - vec2(1.0, 0.0), linear) <= low.x;
+  neighbours.y = receiver_depth(face, query.plane, centre + vec2(1.0, 0.0), linear) <= high.z;
+  neighbours.z = receiver_depth(face, query.plane, centre - vec2(0.0, 1.0), linear) <= low.z;
+  neighbours.w = receiver_depth(face, query.plane, centre + vec2(0.0, 1.0), linear) <= high.x;
+  return receiver_depth(face, query.plane, centre, linear) <= low.y;
+}
+
 float unmapped_visibility(int state) { return state == PIXEL_AWAY ? 0.0 : 1.0; }

@@ -216,6 +216,21 @@ Image visibility_image(uint32_t width, uint32_t height, float value) {
   return image;
 }
 
+TEST_F(CliTest, AFolderOfTheSameNameDoesNotHideASceneOrSuite) {
+  fs::create_directories(folder_ / "fence");
+  fs::create_directories(folder_ / "demo");
+  EXPECT_EQ(run("scene info fence").status, 0);
+  const Outcome outcome = run("bench demo --shard 0/1");
+  EXPECT_EQ(outcome.error.find("folder"), std::string::npos) << outcome.error;
+}
+
+TEST_F(CliTest, FileSizeLimitIsStatusTwoAndLeavesNothing) {
+  const Outcome outcome = run("scene info fence >/dev/null; ulimit -f 8; '" GNOMON_EXECUTABLE
+                              "' reference fence --size 64x36 --out x.exr");
+  EXPECT_EQ(outcome.status, 2) << outcome.error;
+  EXPECT_FALSE(fs::exists(folder_ / "x.exr"));
+}
+
 TEST_F(CliTest, CompareGivesTheFigures) {
   Image result = visibility_image(4, 2, 1), reference = visibility_image(4, 2, 1);
   reference.at(0, 0) = 0;  // one of eight pixels is wrongly lit
