@@ -10,7 +10,8 @@
 namespace gnomon {
 namespace {
 
-const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& resources, const std::string& port) {
+const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& resources,
+                            const std::string& port) {
   const auto found = node.resources.find(port);
   if (found == node.resources.end()) fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
   return resources[found->second];
@@ -35,16 +36,22 @@ VkImageLayout layout_of(const PlanNode& node, const std::string& name, VkFormat 
 
 VkImageView target_view(const GpuImage& image, const std::optional<uint32_t>& layer) {
   if (!layer) return image.attachment_view();
-  return image.view(VK_IMAGE_VIEW_TYPE_2D, std::min(*layer, image.shape().layers - 1), 1, 0, 1, image.aspect());
+  return image.view(VK_IMAGE_VIEW_TYPE_2D, std::min(*layer, image.shape().layers - 1), 1, 0, 1,
+                    image.aspect());
 }
 
 }  // namespace
 
-Environment::Environment(std::shared_ptr<Device> device, const GpuScene& scene, const RenderSettings& settings,
-                         const PlanNode& node, const NodeState& state, const std::vector<Physical>& resources,
-                         VkPipelineCache cache)
-    : device_(std::move(device)), scene_(scene), settings_(settings), node_(node), state_(state),
-      resources_(resources), cache_(cache) {}
+Environment::Environment(std::shared_ptr<Device> device, const GpuScene& scene,
+                         const RenderSettings& settings, const PlanNode& node, const NodeState& state,
+                         const std::vector<Physical>& resources, VkPipelineCache cache)
+    : device_(std::move(device)),
+      scene_(scene),
+      settings_(settings),
+      node_(node),
+      state_(state),
+      resources_(resources),
+      cache_(cache) {}
 
 ImageShape Environment::shape(const std::string& port) const {
   return physical_of(node_, resources_, port).image.shape();
@@ -56,8 +63,9 @@ Defines Environment::with_parameters(Defines defines) const {
 }
 
 Pipeline Environment::compute(const std::string& file, Defines defines) const {
-  return make_compute_pipeline(device_, state_.pipeline_layout.get(),
-                               {file, ShaderStage::compute, state_.preamble, with_parameters(std::move(defines))}, cache_);
+  return make_compute_pipeline(
+      device_, state_.pipeline_layout.get(),
+      {file, ShaderStage::compute, state_.preamble, with_parameters(std::move(defines))}, cache_);
 }
 
 Pipeline Environment::raster(RasterState state) const {
@@ -93,14 +101,21 @@ void Environment::attach(const std::string& port, const Buffer& buffer) const {
   fail(fmt::format("pass '{}' has no buffer port '{}' that shaders see", node_.id, port));
 }
 
-Context::Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node, const NodeState& state,
-                 const std::vector<Physical>& resources, const std::vector<Physical>& previous, uint32_t iteration)
-    : commands_(commands), scene_(scene), node_(node), state_(state), resources_(resources), previous_(previous),
+Context::Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node,
+                 const NodeState& state, const std::vector<Physical>& resources,
+                 const std::vector<Physical>& previous, uint32_t iteration)
+    : commands_(commands),
+      scene_(scene),
+      node_(node),
+      state_(state),
+      resources_(resources),
+      previous_(previous),
       iteration_(iteration) {}
 
 const Physical& Context::physical(const std::string& port) const {
   const auto back = node_.previous_inputs.find(port);
-  return physical_of(node_, back != node_.previous_inputs.end() && back->second ? previous_ : resources_, port);
+  return physical_of(node_, back != node_.previous_inputs.end() && back->second ? previous_ : resources_,
+                     port);
 }
 ImageShape Context::shape(const std::string& port) const { return physical(port).image.shape(); }
 const Buffer& Context::buffer(const std::string& port) const { return physical(port).buffer; }
@@ -108,7 +123,8 @@ const Buffer& Context::buffer(const std::string& port) const { return physical(p
 void Context::bind(const Pipeline& pipeline) {
   vkCmdBindPipeline(commands_, pipeline.bind_point, pipeline.handle);
   const VkDescriptorSet sets[] = {scene_.frame_set(), state_.set};
-  vkCmdBindDescriptorSets(commands_, pipeline.bind_point, pipeline.layout, 0, state_.set ? 2 : 1, sets, 0, nullptr);
+  vkCmdBindDescriptorSets(commands_, pipeline.bind_point, pipeline.layout, 0, state_.set ? 2 : 1, sets, 0,
+                          nullptr);
 }
 
 void Context::dispatch(const Pipeline& pipeline, uint32_t x, uint32_t y, uint32_t z) {
@@ -151,8 +167,8 @@ void Context::render(const Targets& targets, const std::function<void()>& body) 
   for (const ColorTarget& target : targets.colors) {
     const GpuImage& image = physical(target.port).image;
     note(image);
-    auto info = attachment(target_view(image, targets.layer), layout_of(node_, target.port, image.shape().format),
-                           target.clear.has_value());
+    auto info = attachment(target_view(image, targets.layer),
+                           layout_of(node_, target.port, image.shape().format), target.clear.has_value());
     if (target.clear) std::copy(target.clear->begin(), target.clear->end(), info.clearValue.color.float32);
     colors.push_back(info);
   }
@@ -162,7 +178,8 @@ void Context::render(const Targets& targets, const std::function<void()>& body) 
     const GpuImage& image = physical(targets.depth->port).image;
     note(image);
     stencil = image.aspect() & VK_IMAGE_ASPECT_STENCIL_BIT;
-    depth = attachment(target_view(image, targets.layer), layout_of(node_, targets.depth->port, image.shape().format),
+    depth = attachment(target_view(image, targets.layer),
+                       layout_of(node_, targets.depth->port, image.shape().format),
                        targets.depth->clear.has_value());
     const Access access = node_.declaration.find(targets.depth->port)->access;
     if (!has(access, Access::depth)) depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;  // planned as a read
@@ -200,7 +217,8 @@ void Context::bind_geometry() {
 
 void Context::draw(const Draw& draw, uint32_t instances) {
   const uint32_t indices[] = {draw.instance, draw.material};
-  vkCmdPushConstants(commands_, state_.pipeline_layout.get(), VK_SHADER_STAGE_ALL, 0, sizeof(indices), indices);
+  vkCmdPushConstants(commands_, state_.pipeline_layout.get(), VK_SHADER_STAGE_ALL, 0, sizeof(indices),
+                     indices);
   vkCmdDrawIndexed(commands_, draw.index_count, instances, draw.first_index, draw.vertex_offset, 0);
 }
 
@@ -215,10 +233,13 @@ void Context::draw_scene(const ScenePipelines& pipelines, Cull cull, uint32_t la
       if (!bound) bind(pipeline), bound = true;
       const bool one_sided = cull != Cull::none && !d.double_sided;
       const bool back = (cull == Cull::material) != d.mirrored;  // a mirrored instance turns the winding over
-      const VkCullModeFlags mode = !one_sided ? VK_CULL_MODE_NONE : back ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_FRONT_BIT;
+      const VkCullModeFlags mode = !one_sided ? VK_CULL_MODE_NONE
+                                   : back     ? VK_CULL_MODE_BACK_BIT
+                                              : VK_CULL_MODE_FRONT_BIT;
       if (mode != current) set_cull(mode), current = mode;
       const VkDescriptorSet material = scene_.material_set(d.material);
-      vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 2, 1, &material, 0, nullptr);
+      vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 2, 1, &material, 0,
+                              nullptr);
       draw(d, layers);
     }
   }

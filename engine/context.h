@@ -52,8 +52,8 @@ class Environment {
   // Buffers that live as long as the pass, for what only prepare() knows the size or the content of.
   Buffer buffer(uint64_t bytes, VkBufferUsageFlags usage) const;
   Buffer upload(std::span<const std::byte> bytes, VkBufferUsageFlags usage) const;
-  // Shaders see `buffer`, which must outlive the pass' use, instead of the buffer port's own memory. Barriers are the
-  // pass' business.
+  // Shaders see `buffer`, which must outlive the pass' use, instead of the buffer port's own memory. Barriers
+  // are the pass' business.
   void attach(const std::string& port, const Buffer& buffer) const;
 
   void fact(const std::string& name, double value) { facts_[node_.id + "." + name] = value; }  // for run.json
@@ -93,7 +93,7 @@ struct Targets {
 enum class Cull {
   material,  // glTF: back faces, unless the material is double-sided
   none,
-  front      // front faces, unless the material is double-sided
+  front  // front faces, unless the material is double-sided
 };
 struct ScenePipelines {
   Pipeline opaque, masked;  // masked: alpha-masked materials
@@ -122,7 +122,8 @@ class Context {
   void dispatch(const Pipeline& pipeline, uint32_t x, uint32_t y = 1, uint32_t z = 1);
   void dispatch_over(const Pipeline& pipeline, Extent pixels, uint32_t layers = 1);
   void dispatch_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset = 0);
-  void fill(const std::string& buffer_port, uint32_t value, uint64_t offset = 0, uint64_t size = VK_WHOLE_SIZE);
+  void fill(const std::string& buffer_port, uint32_t value, uint64_t offset = 0,
+            uint64_t size = VK_WHOLE_SIZE);
   // Makes everything this pass wrote so far visible to its next command.
   void own_barrier();
 

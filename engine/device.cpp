@@ -16,7 +16,8 @@ constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 constexpr const char* kNoDeviceHint =
     "install a Vulkan driver; without a GPU, Mesa's lavapipe (Debian: mesa-vulkan-drivers)";
 
-VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT type,
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                          VkDebugUtilsMessageTypeFlagsEXT type,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   // Loader notes about drivers that are not there are no fault of ours.
   if (type == VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT) return VK_FALSE;
@@ -29,7 +30,8 @@ bool has_layer(const char* name) {
   vkEnumerateInstanceLayerProperties(&count, nullptr);
   std::vector<VkLayerProperties> layers(count);
   vkEnumerateInstanceLayerProperties(&count, layers.data());
-  return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return !std::strcmp(l.layerName, name); });
+  return std::any_of(layers.begin(), layers.end(),
+                     [&](const auto& l) { return !std::strcmp(l.layerName, name); });
 }
 
 std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
@@ -62,7 +64,8 @@ std::string lower(std::string text) {
 
 VkInstance bare_instance() {
   if (volkInitialize() != VK_SUCCESS) fail("no Vulkan loader on this machine", {}, {}, kNoDeviceHint);
-  VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "gnomon", 1, "gnomon", 1, VK_API_VERSION_1_3};
+  VkApplicationInfo app{
+      VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "gnomon", 1, "gnomon", 1, VK_API_VERSION_1_3};
   VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
   info.pApplicationInfo = &app;
   VkInstance instance = VK_NULL_HANDLE;
@@ -96,7 +99,7 @@ Device::~Device() { destroy(); }
 
 void Device::destroy() {
   if (device_) vkDestroyDevice(device_, nullptr);
-  if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+  if (messenger_) destroy_messenger_(instance_, messenger_, nullptr);
   if (instance_) vkDestroyInstance(instance_, nullptr);
   device_ = VK_NULL_HANDLE, messenger_ = VK_NULL_HANDLE, instance_ = VK_NULL_HANDLE;
 }
@@ -115,8 +118,10 @@ void Device::make_instance(bool validation) {
   if (volkInitialize() != VK_SUCCESS) fail("no Vulkan loader on this machine", {}, {}, kNoDeviceHint);
   if (validation && !has_layer(kValidationLayer))
     fail("the Vulkan validation layer is not installed", {}, {}, "Debian: vulkan-validationlayers");
-  VkApplicationInfo app{VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "gnomon", 1, "gnomon", 1, VK_API_VERSION_1_3};
-  const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+  VkApplicationInfo app{
+      VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "gnomon", 1, "gnomon", 1, VK_API_VERSION_1_3};
+  const VkValidationFeatureEnableEXT enabled[] = {
+      VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
   VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
   features.enabledValidationFeatureCount = 1;
   features.pEnabledValidationFeatures = enabled;
@@ -138,11 +143,13 @@ void Device::make_instance(bool validation) {
   VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
   messenger.messageSeverity =
       VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-  messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+  messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT |
+                          VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
                           VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
   messenger.pfnUserCallback = on_message;
   messenger.pUserData = this;
-  check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
+  check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
+        "vkCreateDebugUtilsMessengerEXT");
 }
 
 void Device::choose_physical(const std::string& name_part) {
@@ -151,8 +158,9 @@ void Device::choose_physical(const std::string& name_part) {
   if (devices.empty()) fail("no Vulkan 1.3 device on this machine", {}, {}, kNoDeviceHint);
   std::string wanted = lower(name_part);
   if (wanted == "lavapipe") wanted = "llvmpipe";  // Mesa's name for the same device
-  std::stable_sort(devices.begin(), devices.end(),
-                   [](VkPhysicalDevice a, VkPhysicalDevice b) { return !info_of(a).is_cpu && info_of(b).is_cpu; });
+  std::stable_sort(devices.begin(), devices.end(), [](VkPhysicalDevice a, VkPhysicalDevice b) {
+    return !info_of(a).is_cpu && info_of(b).is_cpu;
+  });
   for (VkPhysicalDevice candidate : devices) {
     if (lower(info_of(candidate).name).find(wanted) == std::string::npos) continue;
     physical_ = candidate;
@@ -161,7 +169,8 @@ void Device::choose_physical(const std::string& name_part) {
   if (!physical_) {
     std::string names;
     for (VkPhysicalDevice d : devices) names += (names.empty() ? "" : ", ") + info_of(d).name;
-    fail(fmt::format("no Vulkan device has '{}' in its name", name_part), {}, "--device", "there is: " + names);
+    fail(fmt::format("no Vulkan device has '{}' in its name", name_part), {}, "--device",
+         "there is: " + names);
   }
   info_ = info_of(physical_);
   vkGetPhysicalDeviceProperties(physical_, &properties_);
@@ -214,7 +223,8 @@ uint32_t Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted) c
   fail(fmt::format("'{}' has no memory type for a resource", info_.name));
 }
 
-uint32_t Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags preferred) const {
+uint32_t Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted,
+                             VkMemoryPropertyFlags preferred) const {
   for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
     if ((type_bits >> i & 1) &&
         (memory_.memoryTypes[i].propertyFlags & (wanted | preferred)) == (wanted | preferred))
@@ -222,7 +232,9 @@ uint32_t Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted, V
   return memory_type(type_bits, wanted);
 }
 
-std::shared_ptr<Device> open_device(const DeviceOptions& options) { return std::make_shared<Device>(options); }
+std::shared_ptr<Device> open_device(const DeviceOptions& options) {
+  return std::make_shared<Device>(options);
+}
 
 std::vector<DeviceInfo> list_devices() {
   VkInstance instance = bare_instance();

@@ -34,7 +34,8 @@ class Device {
   // Index of a memory type allowed by `type_bits` with all of `wanted`; Error when there is none.
   uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted) const;
   // Like memory_type, with `preferred` flags too where some type has them.
-  uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags preferred) const;
+  uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted,
+                       VkMemoryPropertyFlags preferred) const;
 
   // Messages of the validation layers so far (warnings and errors).
   const std::vector<std::string>& messages() const { return messages_; }
@@ -52,6 +53,8 @@ class Device {
 
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  // Of this instance: volk's is of the instance made last, which may lack the extension.
+  PFN_vkDestroyDebugUtilsMessengerEXT destroy_messenger_ = nullptr;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;

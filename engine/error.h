@@ -30,7 +30,8 @@ class Error : public std::runtime_error {
   std::vector<Problem> problems_;
 };
 
-[[noreturn]] void fail(std::string what, std::string file = {}, std::string place = {}, std::string hint = {});
+[[noreturn]] void fail(std::string what, std::string file = {}, std::string place = {},
+                       std::string hint = {});
 
 // Collects problems so that all of them are reported once.
 class Problems {
@@ -44,8 +45,8 @@ class Problems {
   std::vector<Problem> problems_;
 };
 
-// "did you mean 'x'?" for the candidate nearest to `name` (edit distance at most a third of its length, or 2);
-// otherwise "one of: a, b, c" when there are at most 12 candidates; otherwise empty.
+// "did you mean 'x'?" for the candidate nearest to `name` (edit distance at most a third of its length, or
+// 2); otherwise "one of: a, b, c" when there are at most 12 candidates; otherwise empty.
 std::string did_you_mean(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace gnomon

@@ -19,7 +19,8 @@ glm::dmat4 camera_projection(const Camera& camera, double aspect, bool reversed_
   return p;
 }
 
-// Rows of a rigid light_from_world, for positions relative to `eye`. Subtracted in double: exact at far origins.
+// Rows of a rigid light_from_world, for positions relative to `eye`. Subtracted in double: exact at far
+// origins.
 void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, glm::vec4 (&rows)[3]) {
   const glm::dmat4 m = light_from_world * glm::translate(glm::dmat4(1.0), eye);
   for (int r = 0; r < 3; ++r) rows[r] = glm::vec4(m[0][r], m[1][r], m[2][r], m[3][r]);
@@ -45,7 +46,8 @@ FrameData frame_data(const Camera& camera, uint32_t width, uint32_t height, bool
   return data;
 }
 
-std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFace>& faces, const glm::dvec3& eye) {
+std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFace>& faces,
+                                  const glm::dvec3& eye) {
   std::vector<LightData> result;
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -53,7 +55,8 @@ std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFac
     relative_rows(glm::inverse(light.world_from_light), eye, data.rows);
     const double type = light.type == LightType::spot ? 0 : light.type == LightType::point ? 1 : 2;
     data.position = glm::vec4(glm::dvec3(light.world_from_light[3]) - eye, type);
-    data.direction = glm::vec4(-glm::normalize(glm::dvec3(light.world_from_light[2])), light.range.value_or(0.0));
+    data.direction =
+        glm::vec4(-glm::normalize(glm::dvec3(light.world_from_light[2])), light.range.value_or(0.0));
     data.intensity = glm::vec4(light.color * light.intensity, 0.0);
     data.cone = glm::vec4(std::cos(light.inner_cone), std::cos(light.outer_cone), 0.0, 0.0);
     for (uint32_t f = 0; f < faces.size(); ++f) {
@@ -86,7 +89,8 @@ std::vector<InstanceData> instance_data(const Scene& scene, const std::vector<ui
     InstanceData data{};
     data.relative_from_object = glm::mat4(glm::translate(glm::dmat4(1.0), -eye) * instance.world_from_object);
     const glm::dmat3 linear(instance.world_from_object);
-    // The cofactor matrix turns normals rightly for every scale, and its sign follows a mirrored instance's winding.
+    // The cofactor matrix turns normals rightly for every scale, and its sign follows a mirrored instance's
+    // winding.
     const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                               glm::cross(linear[0], linear[1]));
     for (int c = 0; c < 3; ++c) data.normal_columns[c] = glm::vec4(cofactor[c], 0.0);
@@ -100,7 +104,8 @@ std::vector<InstanceData> instance_data(const Scene& scene, const std::vector<ui
 std::vector<MaterialData> material_data(const Scene& scene) {
   std::vector<MaterialData> result;
   for (const Material& m : scene.materials)
-    result.push_back({m.base_color, {m.alpha_masked ? m.alpha_cutoff : 0.0f, m.double_sided ? 1.0f : 0.0f, 0, 0}});
+    result.push_back(
+        {m.base_color, {m.alpha_masked ? m.alpha_cutoff : 0.0f, m.double_sided ? 1.0f : 0.0f, 0, 0}});
   return result;
 }
 

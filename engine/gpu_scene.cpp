@@ -46,7 +46,8 @@ Handle<VkDescriptorSetLayout> make_layout(const std::shared_ptr<Device>& device,
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   info.bindingCount = uint32_t(bindings.size());
   info.pBindings = bindings.data();
-  return create(device, vkCreateDescriptorSetLayout, info, vkDestroyDescriptorSetLayout, "vkCreateDescriptorSetLayout");
+  return create(device, vkCreateDescriptorSetLayout, info, vkDestroyDescriptorSetLayout,
+                "vkCreateDescriptorSetLayout");
 }
 
 void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to) {
@@ -74,8 +75,8 @@ GpuImage upload_texture(const std::shared_ptr<Device>& device, const Texture& te
   VkBufferImageCopy copy{};
   copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   copy.imageExtent = {texture.width, texture.height, 1};
-  vkCmdCopyBufferToImage(once.commands(), staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                         &copy);
+  vkCmdCopyBufferToImage(once.commands(), staging.handle(), image.handle(),
+                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
   barrier(once.commands(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   once.submit_and_wait();
@@ -85,8 +86,10 @@ GpuImage upload_texture(const std::shared_ptr<Device>& device, const Texture& te
 Handle<VkSampler> make_sampler(const std::shared_ptr<Device>& device, const Texture& texture) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = texture.nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-  info.addressModeU = texture.repeat_u ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.addressModeV = texture.repeat_v ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.addressModeU =
+      texture.repeat_u ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.addressModeV =
+      texture.repeat_v ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   return create(device, vkCreateSampler, info, vkDestroySampler, "vkCreateSampler");
 }
 
@@ -96,7 +99,8 @@ glm::i16vec2 octahedral_snorm16(const glm::vec3& unit) {
   const float sum = std::abs(unit.x) + std::abs(unit.y) + std::abs(unit.z);
   glm::vec2 p(unit.x / sum, unit.y / sum);
   if (unit.z < 0) {
-    const glm::vec2 fold((1 - std::abs(p.y)) * (p.x >= 0 ? 1 : -1), (1 - std::abs(p.x)) * (p.y >= 0 ? 1 : -1));
+    const glm::vec2 fold((1 - std::abs(p.y)) * (p.x >= 0 ? 1 : -1),
+                         (1 - std::abs(p.x)) * (p.y >= 0 ? 1 : -1));
     p = fold;
   }
   return {int16_t(std::lround(p.x * 32767.0f)), int16_t(std::lround(p.y * 32767.0f))};
@@ -121,7 +125,8 @@ void GpuScene::upload_geometry() {
     positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (size_t i = 0; i < mesh.positions.size(); ++i) attributes.push_back(attributes_at(mesh, i));
     indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
-    for (size_t t = 0; t < mesh.triangles(); ++t) normals.push_back(octahedral_snorm16(triangle_normal(mesh, t)));
+    for (size_t t = 0; t < mesh.triangles(); ++t)
+      normals.push_back(octahedral_snorm16(triangle_normal(mesh, t)));
   }
   for (uint32_t i = 0; i < scene_->instances.size(); ++i) {
     const Instance& instance = scene_->instances[i];
@@ -166,14 +171,16 @@ void GpuScene::make_frame_set() {
   const uint64_t most = device_->limits().maxUniformBufferRange;
   if (lights_.size() > most || faces_buffer_.size() > most)
     fail(fmt::format("{} lights with {} shadow-map faces are more than '{}' can hold", scene_->lights.size(),
-                     faces_.size(), device_->info().name), scene_->file.string());
+                     faces_.size(), device_->info().name),
+         scene_->file.string());
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < std::size(buffers); ++i)
-    bindings.push_back({i, i < kUniformBuffers ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                        VK_SHADER_STAGE_ALL, nullptr});
+    bindings.push_back(
+        {i, i < kUniformBuffers ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+         VK_SHADER_STAGE_ALL, nullptr});
   frame_layout_ = make_layout(device_, bindings);
-  material_layout_ = make_layout(device_, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
-                                                      VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}});
+  material_layout_ = make_layout(
+      device_, {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}});
   const uint32_t materials = uint32_t(scene_->materials.size());
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kUniformBuffers},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 16},
@@ -185,7 +192,8 @@ void GpuScene::make_frame_set() {
   pool_ = create(device_, vkCreateDescriptorPool, pool, vkDestroyDescriptorPool, "vkCreateDescriptorPool");
 
   const VkDescriptorSetLayout layout = frame_layout();
-  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool_.get(), 1, &layout};
+  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool_.get(),
+                                       1, &layout};
   check(vkAllocateDescriptorSets(device_->handle(), &allocate, &frame_set_), "vkAllocateDescriptorSets");
   for (uint32_t i = 0; i < std::size(buffers); ++i) {
     VkDescriptorBufferInfo info{buffers[i]->handle(), 0, VK_WHOLE_SIZE};
@@ -200,7 +208,8 @@ void GpuScene::make_material_sets() {
   for (const Material& material : scene_->materials) {
     const uint32_t texture = material.base_color_texture.value_or(uint32_t(textures_.size() - 1));
     const VkDescriptorSetLayout layout = material_layout();
-    VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool_.get(), 1, &layout};
+    VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool_.get(),
+                                         1, &layout};
     VkDescriptorSet set = VK_NULL_HANDLE;
     check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set), "vkAllocateDescriptorSets");
     VkDescriptorImageInfo info{samplers_[texture].get(), textures_[texture].sampled_view(false),
@@ -213,11 +222,12 @@ void GpuScene::make_material_sets() {
   }
 }
 
-void GpuScene::update(uint32_t camera_index, uint32_t width, uint32_t height, bool reversed_z, uint32_t frame_index) {
+void GpuScene::update(uint32_t camera_index, uint32_t width, uint32_t height, bool reversed_z,
+                      uint32_t frame_index) {
   const Camera& camera = scene_->cameras.at(camera_index);
   const glm::dvec3 eye(camera.world_from_camera[3]);
-  frame_ = frame_data(camera, width, height, reversed_z, uint32_t(scene_->lights.size()), uint32_t(faces_.size()),
-                      frame_index);
+  frame_ = frame_data(camera, width, height, reversed_z, uint32_t(scene_->lights.size()),
+                      uint32_t(faces_.size()), frame_index);
   std::memcpy(frame_buffer_.bytes().data(), &frame_, sizeof(frame_));
   write(lights_, light_data(*scene_, faces_, eye));
   write(faces_buffer_, face_data(faces_, eye));

@@ -33,19 +33,21 @@ class GpuScene {
   VkDescriptorSetLayout material_layout() const { return material_layout_.get(); }
   VkDescriptorSet frame_set() const { return frame_set_; }
   VkDescriptorSet material_set(uint32_t material) const { return material_sets_[material]; }
-  VkBuffer positions() const { return positions_.handle(); }    // binding 0: float x, y, z
-  VkBuffer attributes() const { return attributes_.handle(); }  // binding 1: normal, uv, colour (see Attributes)
-  VkBuffer indices() const { return indices_.handle(); }        // uint32
+  VkBuffer positions() const { return positions_.handle(); }  // binding 0: float x, y, z
+  VkBuffer attributes() const {
+    return attributes_.handle();
+  }                                                       // binding 1: normal, uv, colour (see Attributes)
+  VkBuffer indices() const { return indices_.handle(); }  // uint32
   uint32_t first_vertex(uint32_t mesh) const { return first_vertex_[mesh]; }
   uint32_t first_triangle(uint32_t mesh) const { return first_triangle_[mesh]; }
 
   // Writes the frame's data; the device must not be reading it.
   void update(uint32_t camera, uint32_t width, uint32_t height, bool reversed_z, uint32_t frame_index);
 
-  struct Attributes {       // per vertex, 20 bytes
-    int16_t normal[2];      // octahedral, snorm
+  struct Attributes {   // per vertex, 20 bytes
+    int16_t normal[2];  // octahedral, snorm
     float uv[2];
-    uint16_t color[4];      // linear, unorm
+    uint16_t color[4];  // linear, unorm
   };
 
  private:

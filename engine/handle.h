@@ -28,7 +28,9 @@ class Handle {
   explicit operator bool() const { return object_ != VK_NULL_HANDLE; }
 
  private:
-  void swap(Handle& o) { std::swap(device_, o.device_), std::swap(object_, o.object_), std::swap(destroy_, o.destroy_); }
+  void swap(Handle& o) {
+    std::swap(device_, o.device_), std::swap(object_, o.object_), std::swap(destroy_, o.destroy_);
+  }
   std::shared_ptr<Device> device_;
   T object_ = VK_NULL_HANDLE;
   Destroy destroy_ = nullptr;
@@ -37,8 +39,8 @@ class Handle {
 // Calls a vkCreate function and owns what it made; Error naming `call` otherwise.
 template <class T, class Info>
 Handle<T> create(const std::shared_ptr<Device>& device,
-                 VkResult(VKAPI_PTR* make)(VkDevice, const Info*, const VkAllocationCallbacks*, T*), const Info& info,
-                 typename Handle<T>::Destroy destroy, const char* call) {
+                 VkResult(VKAPI_PTR* make)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
+                 const Info& info, typename Handle<T>::Destroy destroy, const char* call) {
   T object = VK_NULL_HANDLE;
   check(make(device->handle(), &info, nullptr, &object), call);
   return Handle<T>(device, object, destroy);

@@ -22,15 +22,19 @@ struct Image {
   std::span<const float> plane(const std::string& name) const;  // Error when absent
   bool has(const std::string& name) const;
   float& at(uint32_t x, uint32_t y, size_t channel = 0) { return data[(channel * height + y) * width + x]; }
-  float at(uint32_t x, uint32_t y, size_t channel = 0) const { return data[(channel * height + y) * width + x]; }
+  float at(uint32_t x, uint32_t y, size_t channel = 0) const {
+    return data[(channel * height + y) * width + x];
+  }
 };
 
 // All writers write beside the target and rename, so that nothing half-written remains; Error on failure.
 Image read_exr(const std::filesystem::path& file);
-void write_exr(const std::filesystem::path& file, const Image& image);   // 32-bit float, ZIP
-Image read_image(const std::filesystem::path& file);                     // EXR or PNG by extension; PNG as 0..1, not linearised
-void write_png_srgb(const std::filesystem::path& file, const Image& linear_rgb);  // 3 channels, clamped, sRGB encoded
-void write_png_gray(const std::filesystem::path& file, const Image& values);      // 1 channel, [0,1], no transfer curve
+void write_exr(const std::filesystem::path& file, const Image& image);  // 32-bit float, ZIP
+Image read_image(const std::filesystem::path& file);  // EXR or PNG by extension; PNG as 0..1, not linearised
+void write_png_srgb(const std::filesystem::path& file,
+                    const Image& linear_rgb);  // 3 channels, clamped, sRGB encoded
+void write_png_gray(const std::filesystem::path& file,
+                    const Image& values);  // 1 channel, [0,1], no transfer curve
 // Writes text atomically; Error names the file (full disk, no such folder, ...).
 void write_text(const std::filesystem::path& file, const std::string& text);
 

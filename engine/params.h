@@ -28,12 +28,14 @@ struct ParamSpec {
   std::string help;
 };
 
-// The values of one pass instance, complete (defaults filled in) and in range. Look-ups are remembered, so that
-// a parameter that nobody reads is found by the tests. A wrong name or type is a programming error: Error.
+// The values of one pass instance, complete (defaults filled in) and in range. Look-ups are remembered, so
+// that a parameter that nobody reads is found by the tests. A wrong name or type is a programming error:
+// Error.
 class Params {
  public:
   Params() = default;
-  Params(std::vector<ParamSpec> specs, Values values) : specs_(std::move(specs)), values_(std::move(values)) {}
+  Params(std::vector<ParamSpec> specs, Values values)
+      : specs_(std::move(specs)), values_(std::move(values)) {}
 
   bool flag(std::string_view name) const;
   std::int64_t integer(std::string_view name) const;

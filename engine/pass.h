@@ -1,4 +1,5 @@
-// What a pass is: the interface that techniques implement, and the declaration that everything else is made from.
+// What a pass is: the interface that techniques implement, and the declaration that everything else is made
+// from.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -17,9 +18,9 @@
 
 namespace gnomon {
 
-struct SceneFacts;   // engine/scene.h
-class Environment;   // engine/context.h
-class Context;       // engine/context.h
+struct SceneFacts;  // engine/scene.h
+class Environment;  // engine/context.h
+class Context;      // engine/context.h
 
 struct Extent {
   uint32_t width = 1, height = 1;  // pixels or texels
@@ -35,9 +36,9 @@ struct ImageShape {
 };
 
 struct BufferShape {
-  uint64_t count = 1;          // elements
-  uint32_t stride = 4;         // bytes an element, std430
-  std::string glsl = "uint";   // GLSL type of an element: a basic type, or a struct of shaders/glsl/lib
+  uint64_t count = 1;         // elements
+  uint32_t stride = 4;        // bytes an element, std430
+  std::string glsl = "uint";  // GLSL type of an element: a basic type, or a struct of shaders/glsl/lib
   bool operator==(const BufferShape&) const = default;
 };
 
@@ -53,7 +54,7 @@ enum class Access : uint32_t {
   indirect = 1 << 7,       // arguments of an indirect draw or dispatch
   transfer_read = 1 << 8,
   transfer_write = 1 << 9,
-  host_read = 1 << 10,     // output: mapped by the host when its segment is done. input: the controller's
+  host_read = 1 << 10,  // output: mapped by the host when its segment is done. input: the controller's
 };
 constexpr Access operator|(Access a, Access b) { return Access(uint32_t(a) | uint32_t(b)); }
 constexpr bool has(Access set, Access one) { return (uint32_t(set) & uint32_t(one)) != 0; }
@@ -77,8 +78,13 @@ enum class PassKind { compute, raster, mixed };
 // The answer to "does this scene need this pass?", with the reason a person reads.
 struct Need {
   enum class Kind { run, constant, bypass } kind = Kind::run;
-  struct Constant { std::string port; float value[4]; };      // every pixel of `port` has this value
-  struct Bypass { std::string output, input; };               // `output` is `input`, untouched
+  struct Constant {
+    std::string port;
+    float value[4];
+  };  // every pixel of `port` has this value
+  struct Bypass {
+    std::string output, input;
+  };  // `output` is `input`, untouched
   std::vector<Constant> constants;
   std::vector<Bypass> bypasses;
   std::string reason;
@@ -93,18 +99,22 @@ struct Need {
 };
 
 // Collects one pass instance's ports and parameters. declare() runs as ordinary code: parameters return their
-// resolved values and inputs the shape of what is connected, so output shapes may depend on both. It is also run
-// with defaults and nothing connected, for listings and for the JSON schema.
+// resolved values and inputs the shape of what is connected, so output shapes may depend on both. It is also
+// run with defaults and nothing connected, for listings and for the JSON schema.
 class Declaration {
  public:
   // What declare() may depend on beside parameters and inputs; all of it known without a device.
   struct Setting {
     Extent viewport{1280, 720};
-    uint32_t lights = 1;      // lights of the scene; images per light have that many layers
-    uint32_t map_faces = 1;   // shadow-map layers: 1 for each spot or directional light, 6 for each point light
+    uint32_t lights = 1;  // lights of the scene; images per light have that many layers
+    uint32_t map_faces =
+        1;  // shadow-map layers: 1 for each spot or directional light, 6 for each point light
   };
   // shapes of the connected outputs, by input name; empty: nothing is connected (listing)
-  struct Connected { std::optional<ImageShape> image; std::optional<BufferShape> buffer; };
+  struct Connected {
+    std::optional<ImageShape> image;
+    std::optional<BufferShape> buffer;
+  };
   using Inputs = std::map<std::string, Connected, std::less<>>;
 
   Declaration() = default;  // listing: defaults, nothing connected
@@ -113,15 +123,18 @@ class Declaration {
 
   const Setting& setting() const { return setting_; }
 
-  void kind(PassKind kind) { kind_ = kind; }            // default: compute
+  void kind(PassKind kind) { kind_ = kind; }                      // default: compute
   void summary(std::string text) { summary_ = std::move(text); }  // one sentence
   void cite(std::string text) { cite_ = std::move(text); }        // paper and equations
 
   // Parameters. Return the resolved value. Ranges are inclusive.
   bool flag(std::string name, bool standard, std::string help);
-  int64_t integer(std::string name, int64_t standard, int64_t min, int64_t max, std::string unit, std::string help);
-  double number(std::string name, double standard, double min, double max, std::string unit, std::string help);
-  std::string choice(std::string name, std::string standard, std::vector<std::string> choices, std::string help);
+  int64_t integer(std::string name, int64_t standard, int64_t min, int64_t max, std::string unit,
+                  std::string help);
+  double number(std::string name, double standard, double min, double max, std::string unit,
+                std::string help);
+  std::string choice(std::string name, std::string standard, std::vector<std::string> choices,
+                     std::string help);
 
   // Image ports. `array`: GLSL sees an array with layers. Return the connected image's shape (listing: 1x1).
   ImageShape input(std::string name, Access access, bool array, std::string help);
@@ -143,8 +156,8 @@ class Declaration {
   const std::vector<Port>& ports() const { return ports_; }
   const std::vector<ParamSpec>& param_specs() const { return specs_; }
   const Port* find(std::string_view port) const;
-  // Values given but not declared are for the caller to report; out-of-range or mistyped ones are collected here
-  // as sentences ("'size' is 0: must be in 1..16384 texels").
+  // Values given but not declared are for the caller to report; out-of-range or mistyped ones are collected
+  // here as sentences ("'size' is 0: must be in 1..16384 texels").
   const std::vector<std::string>& value_errors() const { return value_errors_; }
   std::vector<std::string> undeclared() const;  // names given that declare() did not declare
   Params params() const;                        // every declared parameter, given value or default
@@ -162,17 +175,17 @@ class Declaration {
 
 // What a loop's controller sees when the segment that wrote its host-read inputs is done.
 struct HostView {
-  uint32_t iteration = 0;  // counted from 0
+  uint32_t iteration = 0;                                                   // counted from 0
   std::function<std::span<const std::byte>(std::string_view port)> buffer;  // of a host_read input
 };
 enum class Step { again, done };
 
 struct Pass {
   virtual ~Pass() = default;
-  virtual void declare(Declaration&) const = 0;              // ports, parameters; no device
+  virtual void declare(Declaration&) const = 0;  // ports, parameters; no device
   virtual Need need(const SceneFacts&, const Params&) const { return Need::run(); }
-  virtual void prepare(Environment&) {}                      // pipelines, once
-  virtual void record(Context&) = 0;                         // once per execution
+  virtual void prepare(Environment&) {}                        // pipelines, once
+  virtual void record(Context&) = 0;                           // once per execution
   virtual Step decide(const HostView&) { return Step::done; }  // only for a loop's controller
 };
 
@@ -192,6 +205,6 @@ class PassRegistry {
 }  // namespace gnomon
 
 // Registers a pass type: GNOMON_PASS("mean_filter", MeanFilter) at namespace scope of its .cpp.
-#define GNOMON_PASS(name, Class)                                                              \
+#define GNOMON_PASS(name, Class)                                                                  \
   [[maybe_unused]] static const bool registered_##Class = ::gnomon::PassRegistry::instance().add( \
       name, [] { return std::unique_ptr<::gnomon::Pass>(new Class()); })

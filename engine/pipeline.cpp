@@ -28,8 +28,10 @@ class Module {
   VkShaderModule handle_ = VK_NULL_HANDLE;
 };
 
-Pipeline own(const std::shared_ptr<Device>& device, VkPipeline handle, VkPipelineLayout layout, VkPipelineBindPoint point) {
-  std::shared_ptr<void> owner(nullptr, [device, handle](void*) { vkDestroyPipeline(device->handle(), handle, nullptr); });
+Pipeline own(const std::shared_ptr<Device>& device, VkPipeline handle, VkPipelineLayout layout,
+             VkPipelineBindPoint point) {
+  std::shared_ptr<void> owner(
+      nullptr, [device, handle](void*) { vkDestroyPipeline(device->handle(), handle, nullptr); });
   return {std::move(owner), handle, layout, point};
 }
 
@@ -50,9 +52,9 @@ VertexInput vertex_input(VertexLayout layout) {
   if (layout == VertexLayout::positions) return in;
   in.bindings.push_back({1, sizeof(GpuScene::Attributes), VK_VERTEX_INPUT_RATE_VERTEX});
   in.attributes.push_back({2, 1, VK_FORMAT_R32G32_SFLOAT, offsetof(GpuScene::Attributes, uv)});
+  in.attributes.push_back({3, 1, VK_FORMAT_R16G16B16A16_UNORM, offsetof(GpuScene::Attributes, color)});
   if (layout == VertexLayout::masked) return in;
   in.attributes.push_back({1, 1, VK_FORMAT_R16G16_SNORM, offsetof(GpuScene::Attributes, normal)});
-  in.attributes.push_back({3, 1, VK_FORMAT_R16G16B16A16_UNORM, offsetof(GpuScene::Attributes, color)});
   return in;
 }
 
@@ -60,7 +62,8 @@ VkPipelineColorBlendAttachmentState blend_state(Blend blend, bool write) {
   VkPipelineColorBlendAttachmentState s{};
   s.colorWriteMask = write ? 0xF : 0;
   s.blendEnable = blend != Blend::none;
-  s.srcColorBlendFactor = s.srcAlphaBlendFactor = blend == Blend::multiply ? VK_BLEND_FACTOR_ZERO : VK_BLEND_FACTOR_ONE;
+  s.srcColorBlendFactor = s.srcAlphaBlendFactor =
+      blend == Blend::multiply ? VK_BLEND_FACTOR_ZERO : VK_BLEND_FACTOR_ONE;
   s.dstColorBlendFactor = s.dstAlphaBlendFactor =
       blend == Blend::multiply ? VK_BLEND_FACTOR_SRC_COLOR : VK_BLEND_FACTOR_ONE;
   s.colorBlendOp = s.alphaBlendOp = VK_BLEND_OP_ADD;
@@ -73,10 +76,20 @@ VkPipelineDepthStencilStateCreateInfo depth_stencil_state(const RasterState& sta
   s.depthWriteEnable = state.depth_write;
   s.depthCompareOp = state.depth_compare;
   s.stencilTestEnable = state.stencil.enable;
-  s.front = {VK_STENCIL_OP_KEEP, state.stencil.front_pass, state.stencil.front_depth_fail, state.stencil.compare,
-             0xFF, 0xFF, state.stencil.reference};
-  s.back = {VK_STENCIL_OP_KEEP, state.stencil.back_pass, state.stencil.back_depth_fail, state.stencil.compare,
-            0xFF, 0xFF, state.stencil.reference};
+  s.front = {VK_STENCIL_OP_KEEP,
+             state.stencil.front_pass,
+             state.stencil.front_depth_fail,
+             state.stencil.compare,
+             0xFF,
+             0xFF,
+             state.stencil.reference};
+  s.back = {VK_STENCIL_OP_KEEP,
+            state.stencil.back_pass,
+            state.stencil.back_depth_fail,
+            state.stencil.compare,
+            0xFF,
+            0xFF,
+            state.stencil.reference};
   return s;
 }
 
@@ -89,27 +102,31 @@ Pipeline make_compute_pipeline(const std::shared_ptr<Device>& device, VkPipeline
   info.stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT);
   info.layout = layout;
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device->handle(), cache, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
+  check(vkCreateComputePipelines(device->handle(), cache, 1, &info, nullptr, &handle),
+        "vkCreateComputePipelines");
   return own(device, handle, layout, VK_PIPELINE_BIND_POINT_COMPUTE);
 }
 
-Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout, const RasterState& state,
-                              const std::string& preamble, VkPipelineCache cache) {
+Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
+                              const RasterState& state, const std::string& preamble, VkPipelineCache cache) {
   const Module vertex(device->handle(), {state.vertex, ShaderStage::vertex, preamble, state.defines});
   std::optional<Module> fragment;
   std::vector<VkPipelineShaderStageCreateInfo> stages{vertex.stage(VK_SHADER_STAGE_VERTEX_BIT)};
   if (!state.fragment.empty()) {
-    fragment.emplace(device->handle(), ShaderSource{state.fragment, ShaderStage::fragment, preamble, state.defines});
+    fragment.emplace(device->handle(),
+                     ShaderSource{state.fragment, ShaderStage::fragment, preamble, state.defines});
     stages.push_back(fragment->stage(VK_SHADER_STAGE_FRAGMENT_BIT));
   }
 
   const VertexInput in = vertex_input(state.layout);
-  VkPipelineVertexInputStateCreateInfo vertex_state{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  VkPipelineVertexInputStateCreateInfo vertex_state{
+      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   vertex_state.vertexBindingDescriptionCount = uint32_t(in.bindings.size());
   vertex_state.pVertexBindingDescriptions = in.bindings.data();
   vertex_state.vertexAttributeDescriptionCount = uint32_t(in.attributes.size());
   vertex_state.pVertexAttributeDescriptions = in.attributes.data();
-  VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
+  VkPipelineInputAssemblyStateCreateInfo assembly{
+      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
   assembly.topology = state.topology;
   VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
   viewport.viewportCount = viewport.scissorCount = 1;
@@ -125,7 +142,8 @@ Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineL
   VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
   blend.attachmentCount = uint32_t(blends.size());
   blend.pAttachments = blends.data();
-  const VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_CULL_MODE};
+  const VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                    VK_DYNAMIC_STATE_CULL_MODE};
   VkPipelineDynamicStateCreateInfo dynamics{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
   dynamics.dynamicStateCount = uint32_t(std::size(dynamic));
   dynamics.pDynamicStates = dynamic;
@@ -133,7 +151,8 @@ Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineL
   rendering.colorAttachmentCount = uint32_t(state.colors.size());
   rendering.pColorAttachmentFormats = state.colors.data();
   rendering.depthAttachmentFormat = state.depth;
-  rendering.stencilAttachmentFormat = state.depth == VK_FORMAT_D32_SFLOAT_S8_UINT ? state.depth : VK_FORMAT_UNDEFINED;
+  rendering.stencilAttachmentFormat =
+      state.depth == VK_FORMAT_D32_SFLOAT_S8_UINT ? state.depth : VK_FORMAT_UNDEFINED;
 
   VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
   info.stageCount = uint32_t(stages.size());
@@ -148,7 +167,8 @@ Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineL
   info.pDynamicState = &dynamics;
   info.layout = layout;
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(device->handle(), cache, 1, &info, nullptr, &handle), "vkCreateGraphicsPipelines");
+  check(vkCreateGraphicsPipelines(device->handle(), cache, 1, &info, nullptr, &handle),
+        "vkCreateGraphicsPipelines");
   return own(device, handle, layout, VK_PIPELINE_BIND_POINT_GRAPHICS);
 }
 

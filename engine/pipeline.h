@@ -13,7 +13,7 @@ namespace gnomon {
 enum class VertexLayout {
   none,       // vertices come from gl_VertexIndex alone
   positions,  // location 0: vec3 position
-  masked,     // and location 2: uv
+  masked,     // and location 2: uv, 3: colour: what an alpha mask needs
   full,       // and location 1: octahedral normal, 2: uv, 3: colour
   references  // location 0: uvec2, from a buffer of the pass' own
 };
@@ -28,11 +28,11 @@ struct StencilOps {  // wrap-around counting is done by front and back operation
 };
 
 struct RasterState {
-  std::string vertex, fragment;      // shader files; no fragment shader when empty
-  Defines defines;                   // of both
+  std::string vertex, fragment;  // shader files; no fragment shader when empty
+  Defines defines;               // of both
   VertexLayout layout = VertexLayout::positions;
   VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  std::vector<VkFormat> colors;      // attachments
+  std::vector<VkFormat> colors;          // attachments
   VkFormat depth = VK_FORMAT_UNDEFINED;  // depth (and stencil) attachment
   bool depth_test = false, depth_write = false, depth_clamp = false;
   VkCompareOp depth_compare = VK_COMPARE_OP_LESS_OR_EQUAL;
@@ -51,7 +51,7 @@ struct Pipeline {
 
 Pipeline make_compute_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
                                const ShaderSource& source, VkPipelineCache cache);
-Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout, const RasterState& state,
-                              const std::string& preamble, VkPipelineCache cache);
+Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
+                              const RasterState& state, const std::string& preamble, VkPipelineCache cache);
 
 }  // namespace gnomon

@@ -12,9 +12,8 @@ namespace gnomon {
 namespace {
 
 std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-    return std::isalnum(c) ? char(std::toupper(c)) : '_';
-  });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return std::isalnum(c) ? char(std::toupper(c)) : '_'; });
   return text;
 }
 
@@ -25,36 +24,53 @@ struct GlslFormat {
 };
 GlslFormat glsl_format(VkFormat format) {
   switch (format) {
-    case VK_FORMAT_R8_UNORM: return {"", "r8"};
-    case VK_FORMAT_R8G8B8A8_UNORM: return {"", "rgba8"};
-    case VK_FORMAT_R16_SFLOAT: return {"", "r16f"};
-    case VK_FORMAT_R16G16_SNORM: return {"", "rg16_snorm"};
-    case VK_FORMAT_R16G16_SFLOAT: return {"", "rg16f"};
-    case VK_FORMAT_R16G16_SINT: return {"i", "rg16i"};
-    case VK_FORMAT_R16G16_UINT: return {"u", "rg16ui"};
-    case VK_FORMAT_R16G16B16A16_SFLOAT: return {"", "rgba16f"};
-    case VK_FORMAT_R16G16B16A16_UNORM: return {"", "rgba16"};
-    case VK_FORMAT_R32_UINT: return {"u", "r32ui"};
-    case VK_FORMAT_R32G32_UINT: return {"u", "rg32ui"};
-    case VK_FORMAT_R32G32B32A32_UINT: return {"u", "rgba32ui"};
-    case VK_FORMAT_R32_SFLOAT: return {"", "r32f"};
-    case VK_FORMAT_R32G32_SFLOAT: return {"", "rg32f"};
-    case VK_FORMAT_R32G32B32A32_SFLOAT: return {"", "rgba32f"};
-    default: return {"", ""};  // depth formats: sampled only
+    case VK_FORMAT_R8_UNORM:
+      return {"", "r8"};
+    case VK_FORMAT_R8G8B8A8_UNORM:
+      return {"", "rgba8"};
+    case VK_FORMAT_R16_SFLOAT:
+      return {"", "r16f"};
+    case VK_FORMAT_R16G16_SNORM:
+      return {"", "rg16_snorm"};
+    case VK_FORMAT_R16G16_SFLOAT:
+      return {"", "rg16f"};
+    case VK_FORMAT_R16G16_SINT:
+      return {"i", "rg16i"};
+    case VK_FORMAT_R16G16_UINT:
+      return {"u", "rg16ui"};
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      return {"", "rgba16f"};
+    case VK_FORMAT_R16G16B16A16_UNORM:
+      return {"", "rgba16"};
+    case VK_FORMAT_R32_UINT:
+      return {"u", "r32ui"};
+    case VK_FORMAT_R32G32_UINT:
+      return {"u", "rg32ui"};
+    case VK_FORMAT_R32G32B32A32_UINT:
+      return {"u", "rgba32ui"};
+    case VK_FORMAT_R32_SFLOAT:
+      return {"", "r32f"};
+    case VK_FORMAT_R32G32_SFLOAT:
+      return {"", "rg32f"};
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return {"", "rgba32f"};
+    default:
+      return {"", ""};  // depth formats: sampled only
   }
 }
 
 std::string sampled_text(const ShaderPort& shown, bool constant) {
   const Port& p = *shown.port;
   const GlslFormat f = glsl_format(p.image.format);
-  std::string text = fmt::format("layout(set = 1, binding = {}) uniform {}sampler2D{} {};\n", shown.binding, f.prefix,
-                                 p.array ? "Array" : "", p.name);
+  std::string text = fmt::format("layout(set = 1, binding = {}) uniform {}sampler2D{} {};\n", shown.binding,
+                                 f.prefix, p.array ? "Array" : "", p.name);
   const char* pixel = constant ? "ivec2(0)" : "p";
   if (p.array)
-    text += fmt::format("{}vec4 {}_at(ivec2 p, int layer) {{ return texelFetch({}, ivec3({}, {}), 0); }}\n", f.prefix,
-                        p.name, p.name, pixel, constant ? "0" : "layer");
+    text += fmt::format("{}vec4 {}_at(ivec2 p, int layer) {{ return texelFetch({}, ivec3({}, {}), 0); }}\n",
+                        f.prefix, p.name, p.name, pixel, constant ? "0" : "layer");
   else
-    text += fmt::format("{}vec4 {}_at(ivec2 p) {{ return texelFetch({}, {}, 0); }}\n", f.prefix, p.name, p.name, pixel);
+    text += fmt::format("{}vec4 {}_at(ivec2 p) {{ return texelFetch({}, {}, 0); }}\n", f.prefix, p.name,
+                        p.name, pixel);
   return text;
 }
 
@@ -63,14 +79,16 @@ std::string storage_text(const ShaderPort& shown) {
   const bool reads = has(p.access, Access::storage_read), writes = has(p.access, Access::storage_write);
   const char* qualifier = reads && writes ? "" : reads ? "readonly " : "writeonly ";
   if (p.is_buffer)
-    return fmt::format("layout(set = 1, binding = {}, std430) {}buffer {}_block {{ {} {}[]; }};\n", shown.binding,
-                       qualifier, p.name, p.buffer.glsl, p.name);
+    return fmt::format("layout(set = 1, binding = {}, std430) {}buffer {}_block {{ {} {}[]; }};\n",
+                       shown.binding, qualifier, p.name, p.buffer.glsl, p.name);
   const GlslFormat f = glsl_format(p.image.format);
-  return fmt::format("layout(set = 1, binding = {}, {}) uniform {}{}image2D{} {};\n", shown.binding, f.qualifier,
-                     qualifier, f.prefix, p.array ? "Array" : "", p.name);
+  return fmt::format("layout(set = 1, binding = {}, {}) uniform {}{}image2D{} {};\n", shown.binding,
+                     f.qualifier, qualifier, f.prefix, p.array ? "Array" : "", p.name);
 }
 
-bool in_block(const ParamSpec& spec) { return spec.type == ParamType::integer || spec.type == ParamType::number; }
+bool in_block(const ParamSpec& spec) {
+  return spec.type == ParamType::integer || spec.type == ParamType::number;
+}
 
 }  // namespace
 
@@ -86,8 +104,8 @@ std::vector<ShaderPort> shader_ports(const Declaration& declaration) {
 
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs) {
   // Constants rather than loads: drivers unroll loops over them and keep loads in those loops uniform.
-  std::string text = fmt::format("#define LIGHT_COUNT {}\n#define FACE_COUNT {}\n", declaration.setting().lights,
-                                 declaration.setting().map_faces);
+  std::string text = fmt::format("#define LIGHT_COUNT {}\n#define FACE_COUNT {}\n",
+                                 declaration.setting().lights, declaration.setting().map_faces);
   const auto shown = shader_ports(declaration);
   for (const ShaderPort& port : shown) {
     text += fmt::format("#define HAS_{} 1\n", upper(port.port->name));
@@ -99,18 +117,22 @@ std::string preamble(const Declaration& declaration, const std::map<std::string,
   std::string members;
   for (const ParamSpec& spec : declaration.param_specs())
     if (in_block(spec))
-      members += fmt::format("  {} {};  // {}\n", spec.type == ParamType::integer ? "int" : "float", spec.name, spec.unit);
+      members += fmt::format("  {} {};  // {}\n", spec.type == ParamType::integer ? "int" : "float",
+                             spec.name, spec.unit);
   if (!members.empty())
-    text += fmt::format("layout(set = 1, binding = {}, std140) uniform Params {{\n{}}} params;\n", shown.size(), members);
+    text += fmt::format("layout(set = 1, binding = {}, std140) uniform Params {{\n{}}} params;\n",
+                        shown.size(), members);
   return text;
 }
 
-// Here and below: a copy, because showing every parameter to the shaders is no look-up of the pass (never_read).
+// Here and below: a copy, because showing every parameter to the shaders is no look-up of the pass
+// (never_read).
 Defines parameter_defines(const Params& of_pass) {
   const Params params = of_pass;
   Defines defines;
   for (const ParamSpec& spec : params.specs()) {
-    if (spec.type == ParamType::flag) defines.emplace_back(upper(spec.name), params.flag(spec.name) ? "1" : "0");
+    if (spec.type == ParamType::flag)
+      defines.emplace_back(upper(spec.name), params.flag(spec.name) ? "1" : "0");
     if (spec.type != ParamType::choice) continue;
     for (size_t i = 0; i < spec.choices.size(); ++i)
       defines.emplace_back(upper(spec.name + "_" + spec.choices[i]), std::to_string(i));

@@ -17,15 +17,16 @@ struct ShaderPort {
 };
 std::vector<ShaderPort> shader_ports(const Declaration& declaration);
 
-// Text: one declaration per port, named as the port. Sampled images `x` get `x_at(ivec2)` (arrays: `x_at(ivec2,
-// int layer)`), which read the single texel of an input that was folded to a constant. Integer and number parameters are
-// `params.name`. LIGHT_COUNT and FACE_COUNT are the scene's.
+// Text: one declaration per port, named as the port. Sampled images `x` get `x_at(ivec2)` (arrays:
+// `x_at(ivec2, int layer)`), which read the single texel of an input that was folded to a constant. Integer
+// and number parameters are `params.name`. LIGHT_COUNT and FACE_COUNT are the scene's.
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs);
 
 // Flags: NAME 0 or 1. Choices: NAME = index of the chosen, and NAME_CHOICE for each possible one.
 Defines parameter_defines(const Params& params);
 
-// The parameter block's bytes (std140 scalars are 4 bytes each, in declaration order); empty when there is none.
+// The parameter block's bytes (std140 scalars are 4 bytes each, in declaration order); empty when there is
+// none.
 std::vector<std::byte> parameter_block(const Params& params);
 
 }  // namespace gnomon

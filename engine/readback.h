@@ -6,8 +6,8 @@
 
 namespace gnomon {
 
-// Mip 0 of all layers; the image is in TRANSFER_SRC layout. Channels: "Y" ("R","G",... for several components),
-// layer n > 0 prefixed "lightn.". A smaller image (a folded constant) is repeated over `shown`.
+// Mip 0 of all layers; the image is in TRANSFER_SRC layout. Channels: "Y" ("R","G",... for several
+// components), layer n > 0 prefixed "lightn.". A smaller image (a folded constant) is repeated over `shown`.
 Image read_back(const std::shared_ptr<Device>& device, const GpuImage& image, Extent shown);
 
 }  // namespace gnomon

@@ -28,7 +28,8 @@ MemoryNeed device_need(const std::shared_ptr<Device>& device, const Resource& r)
   const uint64_t granularity = device->limits().bufferImageGranularity;
   const VkMemoryRequirements need =
       r.is_buffer ? Buffer(device, std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16), r.buffer_usage,
-                           Place::device, false).requirements()
+                           Place::device, false)
+                        .requirements()
                   : GpuImage(device, r.image, r.image_usage, false).requirements();
   return {need.size, std::max(need.alignment, granularity)};
 }
@@ -36,10 +37,11 @@ MemoryNeed device_need(const std::shared_ptr<Device>& device, const Resource& r)
 Physical make_physical(const std::shared_ptr<Device>& device, const Resource& r, bool own_memory) {
   Physical physical;
   if (r.is_buffer) {
-    const uint64_t bytes = std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16);  // Vulkan has no empty buffers
+    const uint64_t bytes =
+        std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16);  // Vulkan has no empty buffers
     const VkBufferUsageFlags fill = r.history ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
-    physical.buffer =
-        Buffer(device, bytes, r.buffer_usage | fill, r.host_visible ? Place::host : Place::device, own_memory);
+    physical.buffer = Buffer(device, bytes, r.buffer_usage | fill,
+                             r.host_visible ? Place::host : Place::device, own_memory);
   } else {
     const VkImageUsageFlags fill = r.constant || r.history ? VK_IMAGE_USAGE_TRANSFER_DST_BIT : 0;
     physical.image = GpuImage(device, r.image, r.image_usage | fill, own_memory);
@@ -62,7 +64,8 @@ void change_layout(VkCommandBuffer commands, const GpuImage& image, VkImageLayou
   vkCmdPipelineBarrier2(commands, &info);
 }
 
-void clear_image(VkCommandBuffer commands, const GpuImage& image, const std::array<float, 4>& value, VkImageLayout then) {
+void clear_image(VkCommandBuffer commands, const GpuImage& image, const std::array<float, 4>& value,
+                 VkImageLayout then) {
   constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
   const VkImageSubresourceRange all{image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
   const VkClearColorValue color{{value[0], value[1], value[2], value[3]}};
@@ -87,7 +90,8 @@ void add_image_barrier(std::vector<VkImageMemoryBarrier2>& out, const Barrier& b
   out.push_back(v);
 }
 
-// Aliased memory is reached through other handles than the one in the barrier, so a discard is a memory barrier too.
+// Aliased memory is reached through other handles than the one in the barrier, so a discard is a memory
+// barrier too.
 VkMemoryBarrier2 memory_barrier(const Barrier& b) {
   VkMemoryBarrier2 v{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
   v.srcStageMask = b.before.stages, v.srcAccessMask = b.before.access;
@@ -98,7 +102,8 @@ VkMemoryBarrier2 memory_barrier(const Barrier& b) {
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, const Graph& graph, const RenderSettings& settings);
+  Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, const Graph& graph,
+       const RenderSettings& settings);
   ~Impl();
 
   void make_resources();
@@ -113,7 +118,8 @@ struct Renderer::Impl {
   FrameTiming render(TimingMode mode);
   void run_segments(uint32_t first, uint32_t last, uint32_t iteration, TimingMode mode, FrameTiming& timing);
   void submit(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode, FrameTiming& timing);
-  void record(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode, std::vector<double>& cpu_ms);
+  void record(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode,
+              std::vector<double>& cpu_ms);
   void execute(const Segment& segment);
   void run_loop(const LoopPlan& loop, TimingMode mode, FrameTiming& timing);
   void barriers(VkCommandBuffer commands, const std::vector<Barrier>& list, bool first_turn = true) const;
@@ -125,7 +131,8 @@ struct Renderer::Impl {
   GpuScene gpu_scene;
   Plan plan;
   Memory heap;
-  // After heap, so destroyed first. `previous`: a history resource's copy of the frame before; empty for others.
+  // After heap, so destroyed first. `previous`: a history resource's copy of the frame before; empty for
+  // others.
   std::vector<Physical> resources, previous;
   bool has_history = false;
   std::vector<NodeState> nodes;
@@ -145,11 +152,12 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
                      const RenderSettings& r)
     : device(std::move(d)), scene(std::move(s)), settings(r), gpu_scene(device, scene) {
   if (settings.camera >= scene->cameras.size())
-    fail(fmt::format("the scene has {} camera(s), number {} is asked for", scene->cameras.size(), settings.camera),
+    fail(fmt::format("the scene has {} camera(s), number {} is asked for", scene->cameras.size(),
+                     settings.camera),
          scene->file.string(), "--camera", "cameras are counted from 0");
   const Camera& camera = scene->cameras[settings.camera];
-  const Declaration::Setting setting{{settings.width, settings.height}, uint32_t(scene->lights.size()),
-                                     uint32_t(gpu_scene.faces().size())};
+  const Declaration::Setting setting{
+      {settings.width, settings.height}, uint32_t(scene->lights.size()), uint32_t(gpu_scene.faces().size())};
   CompileOptions options;
   options.alias = settings.alias;
   options.keep_all = settings.keep_all;
@@ -168,8 +176,8 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
   VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool_info.queueFamilyIndex = device->queue_family();
   command_pool = create(device, vkCreateCommandPool, pool_info, vkDestroyCommandPool, "vkCreateCommandPool");
-  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, command_pool.get(),
-                                       VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr,
+                                       command_pool.get(), VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
   check(vkAllocateCommandBuffers(device->handle(), &allocate, &commands), "vkAllocateCommandBuffers");
   VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   fence = create(device, vkCreateFence, fence_info, vkDestroyFence, "vkCreateFence");
@@ -193,15 +201,19 @@ void Renderer::Impl::make_resources() {
     resources[i] = make_physical(device, r, own);
     if (r.history) previous[i] = make_physical(device, r, own);
     has_history = has_history || r.history;
-    if (!own) types &= (r.is_buffer ? resources[i].buffer.requirements() : resources[i].image.requirements()).memoryTypeBits;
+    if (!own)
+      types &= (r.is_buffer ? resources[i].buffer.requirements() : resources[i].image.requirements())
+                   .memoryTypeBits;
   }
   if (plan.heap_bytes == 0) return;
   heap = Memory(device, plan.heap_bytes, device->memory_type(types, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT));
   for (size_t i = 0; i < resources.size(); ++i) {
     const Resource& r = plan.resources[i];
     if (r.size == 0) continue;
-    if (r.is_buffer) resources[i].buffer.bind(heap.handle(), r.offset);
-    else resources[i].image.bind(heap.handle(), r.offset);
+    if (r.is_buffer)
+      resources[i].buffer.bind(heap.handle(), r.offset);
+    else
+      resources[i].image.bind(heap.handle(), r.offset);
   }
 }
 
@@ -209,9 +221,12 @@ void Renderer::Impl::make_nodes() {
   uint32_t images = 1, storage_images = 1, buffers = 1;
   for (const PlanNode& node : plan.nodes)
     for (const ShaderPort& shown : shader_ports(node.declaration)) {
-      if (shown.port->is_buffer) ++buffers;
-      else if (has(shown.port->access, Access::sampled)) ++images;
-      else ++storage_images;
+      if (shown.port->is_buffer)
+        ++buffers;
+      else if (has(shown.port->access, Access::sampled))
+        ++images;
+      else
+        ++storage_images;
     }
   const uint32_t copies = has_history ? 2 : 1;
   const uint32_t count = copies * (uint32_t(plan.nodes.size()) + 1);
@@ -230,7 +245,8 @@ void Renderer::Impl::make_nodes() {
 
 VkDescriptorType descriptor_type(const Port& port) {
   if (port.is_buffer) return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  return has(port.access, Access::sampled) ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  return has(port.access, Access::sampled) ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
+                                           : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 }
 
 void Renderer::Impl::make_node(uint32_t index) {
@@ -243,22 +259,26 @@ void Renderer::Impl::make_node(uint32_t index) {
     bindings.push_back({s.binding, descriptor_type(*s.port), 1, VK_SHADER_STAGE_ALL, nullptr});
   const auto block = parameter_block(node.params);
   if (!block.empty()) {
-    bindings.push_back({uint32_t(shown.size()), VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, VK_SHADER_STAGE_ALL, nullptr});
+    bindings.push_back(
+        {uint32_t(shown.size()), VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, VK_SHADER_STAGE_ALL, nullptr});
     state.parameters = Buffer(device, block.size(), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::host);
     std::memcpy(state.parameters.bytes().data(), block.data(), block.size());
   }
   VkDescriptorSetLayoutCreateInfo layout{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   layout.bindingCount = uint32_t(bindings.size());
   layout.pBindings = bindings.data();
-  state.set_layout =
-      create(device, vkCreateDescriptorSetLayout, layout, vkDestroyDescriptorSetLayout, "vkCreateDescriptorSetLayout");
-  const VkDescriptorSetLayout sets[] = {gpu_scene.frame_layout(), state.set_layout.get(), gpu_scene.material_layout()};
+  state.set_layout = create(device, vkCreateDescriptorSetLayout, layout, vkDestroyDescriptorSetLayout,
+                            "vkCreateDescriptorSetLayout");
+  const VkDescriptorSetLayout sets[] = {gpu_scene.frame_layout(), state.set_layout.get(),
+                                        gpu_scene.material_layout()};
   const VkPushConstantRange push{VK_SHADER_STAGE_ALL, 0, 128};  // what every device has
-  VkPipelineLayoutCreateInfo pipeline{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, nullptr, 0, 3, sets, 1, &push};
+  VkPipelineLayoutCreateInfo pipeline{
+      VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, nullptr, 0, 3, sets, 1, &push};
   state.pipeline_layout =
       create(device, vkCreatePipelineLayout, pipeline, vkDestroyPipelineLayout, "vkCreatePipelineLayout");
   const VkDescriptorSetLayout set_layout = state.set_layout.get();
-  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool.get(), 1, &set_layout};
+  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool.get(), 1,
+                                       &set_layout};
   check(vkAllocateDescriptorSets(device->handle(), &allocate, &state.set), "vkAllocateDescriptorSets");
   write_set(node, state);
   if (!has_history) return;
@@ -276,7 +296,8 @@ const Physical& Renderer::Impl::physical_at(const PlanNode& node, const std::str
   const uint32_t index = node.resources.at(port);
   const auto back = node.previous_inputs.find(port);
   const bool before = back != node.previous_inputs.end() && back->second;
-  const Physical &first = before ? previous[index] : resources[index], &second = before ? resources[index] : previous[index];
+  const Physical &first = before ? previous[index] : resources[index],
+                 &second = before ? resources[index] : previous[index];
   return first.image || first.buffer ? first : second;
 }
 
@@ -292,15 +313,18 @@ void Renderer::Impl::write_set(const PlanNode& node, NodeState& state) {
       w.pBufferInfo = &buffer;
     } else {
       const bool sampled = has(s.port->access, Access::sampled);
-      image.imageView = sampled ? physical.image.sampled_view(s.port->array) : physical.image.storage_view(s.port->array);
-      image.imageLayout = use_of(s.port->access, node.declaration.kind(), false, physical.image.shape().format).layout;
+      image.imageView =
+          sampled ? physical.image.sampled_view(s.port->array) : physical.image.storage_view(s.port->array);
+      image.imageLayout =
+          use_of(s.port->access, node.declaration.kind(), false, physical.image.shape().format).layout;
       w.pImageInfo = &image;
     }
     vkUpdateDescriptorSets(device->handle(), 1, &w, 0, nullptr);
   }
   if (!state.parameters) return;
   VkDescriptorBufferInfo buffer{state.parameters.handle(), 0, VK_WHOLE_SIZE};
-  VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, state.set, uint32_t(shown.size()), 0, 1};
+  VkWriteDescriptorSet w{
+      VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, state.set, uint32_t(shown.size()), 0, 1};
   w.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   w.pBufferInfo = &buffer;
   vkUpdateDescriptorSets(device->handle(), 1, &w, 0, nullptr);
@@ -412,7 +436,8 @@ void Renderer::Impl::record(const Segment& segment, uint32_t iteration, bool rep
   const bool stamped = mode != TimingMode::none, alone = mode == TimingMode::isolated;
   if (stamped) stamps->reset(commands), stamps->stamp(commands, alone);
   for (const LoopPlan& loop : plan.loops)
-    if (repeat && plan.segments[loop.first_segment].first == segment.first) barriers(commands, loop.repeat_barriers);
+    if (repeat && plan.segments[loop.first_segment].first == segment.first)
+      barriers(commands, loop.repeat_barriers);
   for (uint32_t i = segment.first; i < segment.last; ++i) {
     const auto start = Clock::now();
     barriers(commands, plan.nodes[i].barriers, iteration == 0);
@@ -434,7 +459,8 @@ void Renderer::Impl::execute(const Segment& segment) {
   check(vkResetFences(device->handle(), 1, &done), "vkResetFences");
   check(vkQueueSubmit(device->queue(), 1, &info, done), "vkQueueSubmit");
   const VkResult waited = vkWaitForFences(device->handle(), 1, &done, VK_TRUE, kFenceTimeoutNs);
-  if (waited == VK_TIMEOUT) fail("the device did not finish a frame in ten minutes", {}, plan.nodes[segment.first].id);
+  if (waited == VK_TIMEOUT)
+    fail("the device did not finish a frame in ten minutes", {}, plan.nodes[segment.first].id);
   check(waited, "vkWaitForFences");
 }
 
@@ -475,7 +501,8 @@ Image Renderer::read(const std::string& output) {
   }
   const Resource& resource = plan.resources[found->second];
   if (resource.is_buffer) fail(fmt::format("'{}' is a buffer: only images can be captured", output));
-  const Extent shown = resource.constant ? Extent{impl_->settings.width, impl_->settings.height} : resource.image.extent;
+  const Extent shown =
+      resource.constant ? Extent{impl_->settings.width, impl_->settings.height} : resource.image.extent;
   return read_back(impl_->device, impl_->resources[found->second].image, shown);
 }
 

@@ -22,21 +22,22 @@ struct DeviceInfo {
   bool is_cpu = false;
 };
 struct DeviceOptions {
-  std::string name_part;      // part of the device's name, any case; empty: a GPU if there is one, else lavapipe
-  bool validation = false;    // validation and synchronisation-validation layers; see Device::validation_messages
+  std::string name_part;  // part of the device's name, any case; empty: a GPU if there is one, else lavapipe
+  bool validation =
+      false;  // validation and synchronisation-validation layers; see Device::validation_messages
 };
-std::shared_ptr<Device> open_device(const DeviceOptions& options);   // Error: no Vulkan device, no such name
+std::shared_ptr<Device> open_device(const DeviceOptions& options);  // Error: no Vulkan device, no such name
 std::vector<DeviceInfo> list_devices();
 const DeviceInfo& device_info(const Device& device);
 const std::vector<std::string>& validation_messages(const Device& device);
 
 struct RenderSettings {
-  uint32_t width = 1280, height = 720;   // pixels
-  uint32_t camera = 0;                   // index into Scene::cameras
-  bool reversed_z = true;                // camera depth: reversed (1 near, 0 at infinity) or standard
-  bool alias = true;                     // transient memory aliasing
-  bool keep_all = false;                 // leave nothing out
-  std::vector<std::string> captures;     // "node.port" besides the outputs
+  uint32_t width = 1280, height = 720;  // pixels
+  uint32_t camera = 0;                  // index into Scene::cameras
+  bool reversed_z = true;               // camera depth: reversed (1 near, 0 at infinity) or standard
+  bool alias = true;                    // transient memory aliasing
+  bool keep_all = false;                // leave nothing out
+  std::vector<std::string> captures;    // "node.port" besides the outputs
 };
 
 enum class TimingMode {
@@ -47,20 +48,24 @@ enum class TimingMode {
 
 struct PassTiming {
   std::string id, type;
-  uint32_t iteration = 0;     // of its loop; 0 outside loops
-  double gpu_ms = 0;          // stamp to stamp, barriers included: passes add up to their segment
-  double cpu_ms = 0;          // recording
-  double host_wait_ms = 0;    // host waiting for this pass' segment (host-read edges)
+  uint32_t iteration = 0;   // of its loop; 0 outside loops
+  double gpu_ms = 0;        // stamp to stamp, barriers included: passes add up to their segment
+  double cpu_ms = 0;        // recording
+  double host_wait_ms = 0;  // host waiting for this pass' segment (host-read edges)
 };
 struct FrameTiming {
-  double frame_ms = 0;        // submit to completion, wall clock, recording included
-  double record_ms = 0;       // CPU recording of the whole frame
-  double gpu_ms = 0;          // first to last stamp, summed over segments; 0 in mode none
+  double frame_ms = 0;   // submit to completion, wall clock, recording included
+  double record_ms = 0;  // CPU recording of the whole frame
+  double gpu_ms = 0;     // first to last stamp, summed over segments; 0 in mode none
   std::vector<PassTiming> passes;
 };
 
-struct MemoryUse { uint64_t peak_bytes = 0, transient_bytes = 0, transient_bytes_without_aliasing = 0; };
-struct LeftOutPass { std::string pass, reason; };
+struct MemoryUse {
+  uint64_t peak_bytes = 0, transient_bytes = 0, transient_bytes_without_aliasing = 0;
+};
+struct LeftOutPass {
+  std::string pass, reason;
+};
 
 class Renderer {
  public:
@@ -70,15 +75,16 @@ class Renderer {
   ~Renderer();
   Renderer(Renderer&&) noexcept;
 
-  FrameTiming render(TimingMode mode);      // one frame; returns when it is done
+  FrameTiming render(TimingMode mode);  // one frame; returns when it is done
   // A graph output ("visibility", "color") or captured port after render(). Channels: one image channel per
-  // component and layer: "Y" for layer 0 of a one-channel image, "light1.Y", ...; RGB(A) as "R","G","B"(,"A").
+  // component and layer: "Y" for layer 0 of a one-channel image, "light1.Y", ...; RGB(A) as
+  // "R","G","B"(,"A").
   Image read(const std::string& output);
 
   MemoryUse memory() const;
   std::vector<LeftOutPass> left_out() const;
-  std::vector<std::string> warnings() const;               // passes' own ("open mesh 'leaves' in shadow_volumes")
-  std::map<std::string, double> facts() const;             // passes' own figures: "shade.bias_world", ...
+  std::vector<std::string> warnings() const;    // passes' own ("open mesh 'leaves' in shadow_volumes")
+  std::map<std::string, double> facts() const;  // passes' own figures: "shade.bias_world", ...
   std::string plan_text() const;
   // Names of passes in execution order.
   std::vector<std::string> passes() const;

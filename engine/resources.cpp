@@ -9,7 +9,8 @@
 
 namespace gnomon {
 
-Memory::Memory(std::shared_ptr<Device> device, uint64_t size, uint32_t type) : device_(std::move(device)), size_(size) {
+Memory::Memory(std::shared_ptr<Device> device, uint64_t size, uint32_t type)
+    : device_(std::move(device)), size_(size) {
   VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, size, type};
   if (vkAllocateMemory(device_->handle(), &info, nullptr, &handle_) != VK_SUCCESS)
     fail(fmt::format("out of device memory: {:.1f} MiB asked for", double(size) / (1 << 20)), {}, {},
@@ -27,7 +28,8 @@ void* Memory::map() {
   return data;
 }
 
-Buffer::Buffer(std::shared_ptr<Device> device, uint64_t size, VkBufferUsageFlags usage, Place place, bool allocate)
+Buffer::Buffer(std::shared_ptr<Device> device, uint64_t size, VkBufferUsageFlags usage, Place place,
+               bool allocate)
     : device_(std::move(device)), size_(size) {
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = size;
@@ -35,10 +37,12 @@ Buffer::Buffer(std::shared_ptr<Device> device, uint64_t size, VkBufferUsageFlags
   check(vkCreateBuffer(device_->handle(), &info, nullptr, &handle_), "vkCreateBuffer");
   if (!allocate) return;
   const auto need = requirements();
-  constexpr VkMemoryPropertyFlags kHost = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const uint32_t type = place == Place::host
-                            ? device_->memory_type(need.memoryTypeBits, kHost, VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
-                            : device_->memory_type(need.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  constexpr VkMemoryPropertyFlags kHost =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  const uint32_t type =
+      place == Place::host
+          ? device_->memory_type(need.memoryTypeBits, kHost, VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
+          : device_->memory_type(need.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
   memory_ = Memory(device_, need.size, type);
   bind(memory_.handle(), 0);
   if (place == Place::host) mapped_ = memory_.map();
@@ -59,15 +63,18 @@ void Buffer::swap(Buffer& o) {
   std::swap(memory_, o.memory_), std::swap(mapped_, o.mapped_);
 }
 
-GpuImage::GpuImage(std::shared_ptr<Device> device, const ImageShape& shape, VkImageUsageFlags usage, bool allocate)
+GpuImage::GpuImage(std::shared_ptr<Device> device, const ImageShape& shape, VkImageUsageFlags usage,
+                   bool allocate)
     : device_(std::move(device)), shape_(shape) {
   const auto& limits = device_->limits();
   const uint32_t most = limits.maxImageDimension2D;
-  if (shape.extent.width == 0 || shape.extent.height == 0 || shape.extent.width > most || shape.extent.height > most)
-    fail(fmt::format("an image of {}x{} is beyond this device", shape.extent.width, shape.extent.height), {}, {},
-         fmt::format("'{}' allows 1 to {} a side", device_->info().name, most));
+  if (shape.extent.width == 0 || shape.extent.height == 0 || shape.extent.width > most ||
+      shape.extent.height > most)
+    fail(fmt::format("an image of {}x{} is beyond this device", shape.extent.width, shape.extent.height), {},
+         {}, fmt::format("'{}' allows 1 to {} a side", device_->info().name, most));
   if (shape.layers > limits.maxImageArrayLayers)
-    fail(fmt::format("an image of {} layers is beyond this device's {}", shape.layers, limits.maxImageArrayLayers));
+    fail(fmt::format("an image of {} layers is beyond this device's {}", shape.layers,
+                     limits.maxImageArrayLayers));
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.flags = allocate ? 0 : VK_IMAGE_CREATE_ALIAS_BIT;
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -80,7 +87,8 @@ GpuImage::GpuImage(std::shared_ptr<Device> device, const ImageShape& shape, VkIm
   check(vkCreateImage(device_->handle(), &info, nullptr, &handle_), "vkCreateImage");
   if (!allocate) return;
   const auto need = requirements();
-  memory_ = Memory(device_, need.size, device_->memory_type(need.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT));
+  memory_ = Memory(device_, need.size,
+                   device_->memory_type(need.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT));
   bind(memory_.handle(), 0);
 }
 GpuImage::~GpuImage() {
@@ -99,8 +107,8 @@ void GpuImage::bind(VkDeviceMemory memory, uint64_t offset) {
 VkImageView GpuImage::view(VkImageViewType type, uint32_t first_layer, uint32_t layers, uint32_t first_mip,
                            uint32_t mips, VkImageAspectFlags aspect) const {
   for (const View& v : views_)
-    if (v.type == type && v.layer == first_layer && v.layers == layers && v.mip == first_mip && v.mips == mips &&
-        v.aspect == aspect)
+    if (v.type == type && v.layer == first_layer && v.layers == layers && v.mip == first_mip &&
+        v.mips == mips && v.aspect == aspect)
       return v.handle;
   VkImageViewCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
   info.image = handle_;
@@ -113,11 +121,14 @@ VkImageView GpuImage::view(VkImageViewType type, uint32_t first_layer, uint32_t 
   return handle;
 }
 VkImageView GpuImage::sampled_view(bool array) const {
-  const VkImageAspectFlags one = is_depth(shape_.format) ? VkImageAspectFlags(VK_IMAGE_ASPECT_DEPTH_BIT) : aspect();
-  return view(array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0, array ? shape_.layers : 1, 0, shape_.mips, one);
+  const VkImageAspectFlags one =
+      is_depth(shape_.format) ? VkImageAspectFlags(VK_IMAGE_ASPECT_DEPTH_BIT) : aspect();
+  return view(array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0, array ? shape_.layers : 1, 0,
+              shape_.mips, one);
 }
 VkImageView GpuImage::storage_view(bool array) const {
-  return view(array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0, array ? shape_.layers : 1, 0, 1, aspect());
+  return view(array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0, array ? shape_.layers : 1, 0, 1,
+              aspect());
 }
 VkImageView GpuImage::attachment_view() const {
   return view(VK_IMAGE_VIEW_TYPE_2D_ARRAY, 0, shape_.layers, 0, 1, aspect());
@@ -148,7 +159,8 @@ void OneShot::submit_and_wait() {
   check(vkQueueWaitIdle(device_->queue()), "vkQueueWaitIdle");
 }
 
-Buffer upload_buffer(const std::shared_ptr<Device>& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage) {
+Buffer upload_buffer(const std::shared_ptr<Device>& device, std::span<const std::byte> bytes,
+                     VkBufferUsageFlags usage) {
   const uint64_t size = std::max<uint64_t>(bytes.size(), 16);  // Vulkan has no empty buffers
   Buffer staging(device, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Place::host);
   std::memcpy(staging.bytes().data(), bytes.data(), bytes.size());
@@ -163,9 +175,12 @@ Buffer upload_buffer(const std::shared_ptr<Device>& device, std::span<const std:
 VkImageAspectFlags aspect_of(VkFormat format) {
   switch (format) {
     case VK_FORMAT_D32_SFLOAT:
-    case VK_FORMAT_D16_UNORM: return VK_IMAGE_ASPECT_DEPTH_BIT;
-    case VK_FORMAT_D32_SFLOAT_S8_UINT: return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
-    default: return VK_IMAGE_ASPECT_COLOR_BIT;
+    case VK_FORMAT_D16_UNORM:
+      return VK_IMAGE_ASPECT_DEPTH_BIT;
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
+    default:
+      return VK_IMAGE_ASPECT_COLOR_BIT;
   }
 }
 

@@ -14,13 +14,18 @@ class Memory {  // one device allocation
   Memory(std::shared_ptr<Device> device, uint64_t size, uint32_t type);
   ~Memory();
   Memory(Memory&& other) noexcept { swap(other); }
-  Memory& operator=(Memory&& other) noexcept { swap(other); return *this; }
+  Memory& operator=(Memory&& other) noexcept {
+    swap(other);
+    return *this;
+  }
   VkDeviceMemory handle() const { return handle_; }
   uint64_t size() const { return size_; }
   void* map();  // of host-visible memory; stays mapped
 
  private:
-  void swap(Memory& o) { std::swap(device_, o.device_), std::swap(handle_, o.handle_), std::swap(size_, o.size_); }
+  void swap(Memory& o) {
+    std::swap(device_, o.device_), std::swap(handle_, o.handle_), std::swap(size_, o.size_);
+  }
   std::shared_ptr<Device> device_;
   VkDeviceMemory handle_ = VK_NULL_HANDLE;
   uint64_t size_ = 0;
@@ -32,10 +37,14 @@ class Buffer {
  public:
   Buffer() = default;
   // With memory of its own; without any when `allocate` is false (see bind).
-  Buffer(std::shared_ptr<Device> device, uint64_t size, VkBufferUsageFlags usage, Place place, bool allocate = true);
+  Buffer(std::shared_ptr<Device> device, uint64_t size, VkBufferUsageFlags usage, Place place,
+         bool allocate = true);
   ~Buffer();
   Buffer(Buffer&& other) noexcept { swap(other); }
-  Buffer& operator=(Buffer&& other) noexcept { swap(other); return *this; }
+  Buffer& operator=(Buffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
   VkBuffer handle() const { return handle_; }
   uint64_t size() const { return size_; }
   std::span<std::byte> bytes() const { return {static_cast<std::byte*>(mapped_), mapped_ ? size_ : 0}; }
@@ -55,25 +64,35 @@ class Buffer {
 class GpuImage {
  public:
   GpuImage() = default;
-  GpuImage(std::shared_ptr<Device> device, const ImageShape& shape, VkImageUsageFlags usage, bool allocate = true);
+  GpuImage(std::shared_ptr<Device> device, const ImageShape& shape, VkImageUsageFlags usage,
+           bool allocate = true);
   ~GpuImage();
   GpuImage(GpuImage&& other) noexcept { swap(other); }
-  GpuImage& operator=(GpuImage&& other) noexcept { swap(other); return *this; }
+  GpuImage& operator=(GpuImage&& other) noexcept {
+    swap(other);
+    return *this;
+  }
   VkImage handle() const { return handle_; }
   const ImageShape& shape() const { return shape_; }
   VkImageAspectFlags aspect() const;
   VkMemoryRequirements requirements() const;
   void bind(VkDeviceMemory memory, uint64_t offset);
-  // Views are made on first use and live as long as the image. Depth-and-stencil images: `aspect` of the view.
-  VkImageView view(VkImageViewType type, uint32_t first_layer, uint32_t layers, uint32_t first_mip, uint32_t mips,
-                   VkImageAspectFlags aspect) const;
-  VkImageView sampled_view(bool array) const;   // depth aspect of depth formats; all mips
-  VkImageView storage_view(bool array) const;   // mip 0
-  VkImageView attachment_view() const;          // all layers, mip 0, all aspects
+  // Views are made on first use and live as long as the image. Depth-and-stencil images: `aspect` of the
+  // view.
+  VkImageView view(VkImageViewType type, uint32_t first_layer, uint32_t layers, uint32_t first_mip,
+                   uint32_t mips, VkImageAspectFlags aspect) const;
+  VkImageView sampled_view(bool array) const;  // depth aspect of depth formats; all mips
+  VkImageView storage_view(bool array) const;  // mip 0
+  VkImageView attachment_view() const;         // all layers, mip 0, all aspects
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
  private:
-  struct View { VkImageViewType type; uint32_t layer, layers, mip, mips; VkImageAspectFlags aspect; VkImageView handle; };
+  struct View {
+    VkImageViewType type;
+    uint32_t layer, layers, mip, mips;
+    VkImageAspectFlags aspect;
+    VkImageView handle;
+  };
   void swap(GpuImage& o);
   std::shared_ptr<Device> device_;
   VkImage handle_ = VK_NULL_HANDLE;
@@ -97,7 +116,8 @@ class OneShot {
 };
 
 // A device buffer with this content.
-Buffer upload_buffer(const std::shared_ptr<Device>& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
+Buffer upload_buffer(const std::shared_ptr<Device>& device, std::span<const std::byte> bytes,
+                     VkBufferUsageFlags usage);
 
 VkImageAspectFlags aspect_of(VkFormat format);
 

@@ -1,4 +1,5 @@
-// A scene as the CPU knows it: meshes, materials, instances, cameras and lights of a glTF file, and facts about it.
+// A scene as the CPU knows it: meshes, materials, instances, cameras and lights of a glTF file, and facts
+// about it.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +14,27 @@ namespace gnomon {
 struct Bounds {  // axis-aligned, world units; empty when min > max
   glm::dvec3 min{1e300}, max{-1e300};
   bool empty() const { return min.x > max.x; }
-  void add(const glm::dvec3& p) { min = glm::min(min, p); max = glm::max(max, p); }
+  void add(const glm::dvec3& p) {
+    min = glm::min(min, p);
+    max = glm::max(max, p);
+  }
   glm::dvec3 centre() const { return 0.5 * (min + max); }
   double radius() const { return empty() ? 0.0 : 0.5 * glm::length(max - min); }
 };
 
-// One glTF primitive. Object space; triangles only; indices are valid, no triangle is degenerate or non-finite
-// (such ones are dropped at load and counted).
+// One glTF primitive. Object space; triangles only; indices are valid, no triangle is degenerate or
+// non-finite (such ones are dropped at load and counted).
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;    // as many as positions, unit length (made from the faces when the file has none)
-  std::vector<glm::vec2> uvs;        // as many as positions (zero when the file has none)
-  std::vector<glm::vec4> colors;     // COLOR_0, linear; as many as positions, or empty
-  std::vector<uint32_t> indices;     // 3 per triangle, counter-clockwise is front
+  std::vector<glm::vec3>
+      normals;  // as many as positions, unit length (made from the faces when the file has none)
+  std::vector<glm::vec2> uvs;     // as many as positions (zero when the file has none)
+  std::vector<glm::vec4> colors;  // COLOR_0, linear; as many as positions, or empty
+  std::vector<uint32_t> indices;  // 3 per triangle, counter-clockwise is front
   uint32_t material = 0;
-  bool watertight = false;           // every edge of the welded mesh has exactly two opposite triangles
-  Bounds bounds;                     // object space
+  bool watertight = false;  // every edge of the welded mesh has exactly two opposite triangles
+  Bounds bounds;            // object space
   size_t triangles() const { return indices.size() / 3; }
 };
 
@@ -42,10 +47,10 @@ struct Texture {  // 8-bit sRGB RGBA, row 0 at the top (glTF's v = 0)
 
 struct Material {
   std::string name;
-  glm::vec4 base_color{1.0f};              // linear
+  glm::vec4 base_color{1.0f};  // linear
   std::optional<uint32_t> base_color_texture;
   bool double_sided = false;
-  bool alpha_masked = false;               // coverage: base colour alpha >= alpha_cutoff
+  bool alpha_masked = false;  // coverage: base colour alpha >= alpha_cutoff
   float alpha_cutoff = 0.5f;
 };
 
@@ -57,50 +62,51 @@ struct Instance {
 
 struct Camera {  // right-handed, looks along -z; always projected with an infinite far plane
   std::string name;
-  glm::dmat4 world_from_camera{1.0};       // rigid
-  double fov_y = 0.7853981633974483;       // radians
-  double near = 0.1;                       // world units
-  std::optional<double> aspect;            // width / height; absent: the viewport's
+  glm::dmat4 world_from_camera{1.0};  // rigid
+  double fov_y = 0.7853981633974483;  // radians
+  double near = 0.1;                  // world units
+  std::optional<double> aspect;       // width / height; absent: the viewport's
 };
 
 enum class LightType { spot, point, directional };
 
-struct AreaLight {  // rectangle centred on the light, spanned by its local x and y
-  double width = 0, height = 0;            // world units
+struct AreaLight {               // rectangle centred on the light, spanned by its local x and y
+  double width = 0, height = 0;  // world units
 };
 
 struct Light {  // shines along its local -z (spot, directional)
   std::string name;
   LightType type = LightType::spot;
-  glm::dmat4 world_from_light{1.0};        // rigid
-  glm::dvec3 color{1.0};                   // linear
-  double intensity = 1;                    // candela (spot, point) or lux (directional)
+  glm::dmat4 world_from_light{1.0};                        // rigid
+  glm::dvec3 color{1.0};                                   // linear
+  double intensity = 1;                                    // candela (spot, point) or lux (directional)
   double inner_cone = 0, outer_cone = 0.7853981633974483;  // radians, half angles (spot)
-  double map_fov = 1.5707963267948966;     // radians, full angle of a spot's square shadow-map frustum
-  std::optional<double> range;             // world units; absent: no limit
-  std::optional<AreaLight> area;           // from extras.area_light of the light's node, or of the scene
+  double map_fov = 1.5707963267948966;  // radians, full angle of a spot's square shadow-map frustum
+  std::optional<double> range;          // world units; absent: no limit
+  std::optional<AreaLight> area;        // from extras.area_light of the light's node, or of the scene
 };
 
 struct SceneWarnings {  // counted, so that a usable scene with flaws is used and its flaws are told
   uint64_t degenerate_triangles = 0, nonfinite_triangles = 0, duplicate_vertices = 0;
-  std::vector<std::string> messages;       // one sentence each, file and place included
+  std::vector<std::string> messages;  // one sentence each, file and place included
 };
 
 struct Scene {
   std::filesystem::path file;
-  std::string name;                        // file name without folder and extension
+  std::string name;  // file name without folder and extension
   std::vector<Mesh> meshes;
   std::vector<Texture> textures;
-  std::vector<Material> materials;         // never empty
+  std::vector<Material> materials;  // never empty
   std::vector<Instance> instances;
-  std::vector<Camera> cameras;             // never empty: a default one frames the scene
-  std::vector<Light> lights;               // never empty: a default one shines on the scene
-  Bounds bounds;                           // world, over all instances' vertices
+  std::vector<Camera> cameras;  // never empty: a default one frames the scene
+  std::vector<Light> lights;    // never empty: a default one shines on the scene
+  Bounds bounds;                // world, over all instances' vertices
   SceneWarnings warnings;
-  uint64_t triangles() const;              // over all instances
+  uint64_t triangles() const;  // over all instances
 };
 
-// Reads .glb or .gltf. Throws Error (file, place) for what cannot be used; warns in Scene::warnings for the rest.
+// Reads .glb or .gltf. Throws Error (file, place) for what cannot be used; warns in Scene::warnings for the
+// rest.
 Scene load_scene(const std::filesystem::path& file);
 
 // What passes ask about in need(). World units, double precision.
@@ -112,8 +118,9 @@ struct SceneFacts {
   bool has_open_meshes = false;
   bool animated = false;
   // per light:
-  std::vector<bool> casts_visible_shadow;  // some caster can reach a receiver that the camera can see (bounds test)
-  std::vector<double> light_size;          // largest side of the area light; 0 for a point
+  std::vector<bool>
+      casts_visible_shadow;        // some caster can reach a receiver that the camera can see (bounds test)
+  std::vector<double> light_size;  // largest side of the area light; 0 for a point
 };
 SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect);
 
@@ -122,14 +129,15 @@ SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect);
 struct LightFace {
   uint32_t light = 0;
   bool orthographic = false;
-  glm::dmat4 light_from_world{1.0};        // rigid; looks along -z
-  double half_width = 1, half_height = 1;  // tangent of the half angle (perspective) or world units (orthographic)
-  double near = 1, far = 2;                // distance along the view axis, world units; fitted to the scene
-  glm::dmat4 clip_from_light() const;      // perspective or orthographic projection
+  glm::dmat4 light_from_world{1.0};  // rigid; looks along -z
+  double half_width = 1,
+         half_height = 1;    // tangent of the half angle (perspective) or world units (orthographic)
+  double near = 1, far = 2;  // distance along the view axis, world units; fitted to the scene
+  glm::dmat4 clip_from_light() const;  // perspective or orthographic projection
 };
 // Faces in layer order: 1 for spot and directional, 6 for point (+x -x +y -y +z -z of the light's own frame).
-// `border`: texels kept outside each point-light face's 90 degrees, of `map_size`, so that walks and filters near
-// an edge stay in the face. `map_size` in texels.
+// `border`: texels kept outside each point-light face's 90 degrees, of `map_size`, so that walks and filters
+// near an edge stay in the face. `map_size` in texels.
 std::vector<LightFace> light_faces(const Scene& scene, uint32_t map_size, uint32_t border);
 
 }  // namespace gnomon

@@ -67,20 +67,28 @@ void expand(const fs::path& file, std::set<fs::path>& seen, std::string& out) {
 
 EShLanguage language(ShaderStage stage) {
   switch (stage) {
-    case ShaderStage::vertex: return EShLangVertex;
-    case ShaderStage::geometry: return EShLangGeometry;
-    case ShaderStage::fragment: return EShLangFragment;
-    case ShaderStage::compute: return EShLangCompute;
+    case ShaderStage::vertex:
+      return EShLangVertex;
+    case ShaderStage::geometry:
+      return EShLangGeometry;
+    case ShaderStage::fragment:
+      return EShLangFragment;
+    case ShaderStage::compute:
+      return EShLangCompute;
   }
   return EShLangCompute;
 }
 
 const char* stage_define(ShaderStage stage) {
   switch (stage) {
-    case ShaderStage::vertex: return "VERTEX_SHADER";
-    case ShaderStage::geometry: return "GEOMETRY_SHADER";
-    case ShaderStage::fragment: return "FRAGMENT_SHADER";
-    case ShaderStage::compute: return "COMPUTE_SHADER";
+    case ShaderStage::vertex:
+      return "VERTEX_SHADER";
+    case ShaderStage::geometry:
+      return "GEOMETRY_SHADER";
+    case ShaderStage::fragment:
+      return "FRAGMENT_SHADER";
+    case ShaderStage::compute:
+      return "COMPUTE_SHADER";
   }
   return "";
 }
@@ -108,7 +116,8 @@ std::vector<uint32_t> to_spirv(const std::string& text, ShaderStage stage, const
     fail(fmt::format("the shader does not compile:\n{}", shader.getInfoLog()), file.string());
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(messages)) fail(fmt::format("the shader does not link:\n{}", program.getInfoLog()), file.string());
+  if (!program.link(messages))
+    fail(fmt::format("the shader does not link:\n{}", program.getInfoLog()), file.string());
   std::vector<uint32_t> words;
   glslang::SpvOptions options;
   options.disableOptimizer = true;  // drivers optimise; glslang's optimiser is absent from some builds
@@ -169,9 +178,11 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
   const fs::path file = source.file.is_absolute() ? source.file : shader_folder() / source.file;
   const std::string text = full_text(source, file);
   const std::string key_text = fmt::format("{} {}.{}.{} {}\n", kCacheVersion, GLSLANG_VERSION_MAJOR,
-                                           GLSLANG_VERSION_MINOR, GLSLANG_VERSION_PATCH, int(source.stage)) + text;
+                                           GLSLANG_VERSION_MINOR, GLSLANG_VERSION_PATCH, int(source.stage)) +
+                               text;
   const XXH128_hash_t hash = XXH3_128bits(key_text.data(), key_text.size());
-  const fs::path cached = cache_folder() / "spirv" / fmt::format("{:016x}{:016x}.spv", hash.high64, hash.low64);
+  const fs::path cached =
+      cache_folder() / "spirv" / fmt::format("{:016x}{:016x}.spv", hash.high64, hash.low64);
   if (auto words = read_words(cached); !words.empty()) return words;
   auto words = to_spirv(text, source.stage, file);
   write_words(cached, words);

@@ -16,12 +16,12 @@ using Defines = std::vector<std::pair<std::string, std::string>>;
 struct ShaderSource {
   std::filesystem::path file;  // below shaders/glsl, or absolute
   ShaderStage stage = ShaderStage::compute;
-  std::string preamble;        // generated text put before the file: bindings, parameter block
+  std::string preamble;  // generated text put before the file: bindings, parameter block
   Defines defines;
 };
 
-// The file with its `#include "path"` lines replaced by the files they name (relative to the including file, then to
-// shaders/glsl), each at most once, with #line directives. Error: file and line of a missing include.
+// The file with its `#include "path"` lines replaced by the files they name (relative to the including file,
+// then to shaders/glsl), each at most once, with #line directives. Error: file and line of a missing include.
 std::string expand_includes(const std::filesystem::path& file);
 
 // SPIR-V 1.5 words. Read from the cache when the same expanded text was compiled before by the same glslang.

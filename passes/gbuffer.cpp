@@ -13,7 +13,8 @@ class GBuffer : public Pass {
     const Extent size = d.setting().viewport;
     d.output("depth", Access::depth, false, {size, 1, 1, VK_FORMAT_D32_SFLOAT},
              "device depth; reversed z unless asked otherwise, infinite far plane");
-    d.output("normal", Access::color, false, {size, 1, 1, VK_FORMAT_R16G16_SNORM}, "octahedral shading normal");
+    d.output("normal", Access::color, false, {size, 1, 1, VK_FORMAT_R16G16_SNORM},
+             "octahedral shading normal");
     d.output("geometric", Access::color, false, {size, 1, 1, VK_FORMAT_R16G16_SNORM},
              "octahedral normal of the triangle, turned to the camera on double-sided meshes");
     d.output("albedo", Access::color, false, {size, 1, 1, VK_FORMAT_R8G8B8A8_SRGB}, "base colour");
@@ -36,7 +37,9 @@ class GBuffer : public Pass {
 
   void record(Context& c) override {
     constexpr std::array<float, 4> kNothing{};
-    c.render({{{"normal", kNothing}, {"geometric", kNothing}, {"albedo", kNothing}}, DepthTarget{"depth", far_}, {}},
+    c.render({{{"normal", kNothing}, {"geometric", kNothing}, {"albedo", kNothing}},
+              DepthTarget{"depth", far_},
+              {}},
              [&] { c.draw_scene(pipelines_, Cull::material); });
   }
 

@@ -11,9 +11,10 @@ namespace {
 
 // Mirrors shaders/glsl/planar_shadows.glsl; the instance is pushed by each draw.
 struct Push {
-  uint32_t instance, light;
-  float tolerance, unused;  // world units
-  glm::vec4 plane;          // relative to the eye
+  uint32_t instance, material;  // written by Context::draw
+  uint32_t light;
+  float tolerance;  // world units
+  glm::vec4 plane;  // relative to the eye
 };
 
 class PlanarShadows : public Pass {
@@ -22,7 +23,7 @@ class PlanarShadows : public Pass {
     d.kind(PassKind::raster);
     d.summary(
         "Projects the casters onto the scene's largest planes; other receivers are shaded without shadows.");
-    d.cite("Blinn 1988; Macedo 2018, eq. 3.1-3.3, for any plane and light");
+    d.cite("Blinn 1988; Rzeczkowski 2024, eq. 3.1-3.3, for any plane and light");
     const ImageShape depth = d.input("depth", Access::sampled, false, "the camera's device depth");
     d.input("geometric", Access::sampled, false, "octahedral geometric normal");
     d.integer("planes", 4, 1, 16, "1", "receivers: the largest groups of coplanar triangles");
@@ -46,7 +47,7 @@ class PlanarShadows : public Pass {
     state.vertex = "planar_shadows.vert.glsl";
     state.fragment = "planar_shadows.frag.glsl";
     casters_.opaque = e.raster(state);
-    state.layout = VertexLayout::full;
+    state.layout = VertexLayout::masked;
     state.defines = {{"MASKED", "1"}};
     casters_.masked = e.raster(state);
   }
@@ -56,7 +57,7 @@ class PlanarShadows : public Pass {
     for (uint32_t light = 0; light < scene.lights.size(); ++light) {
       constexpr std::array<float, 4> kLit{1, 1, 1, 1};
       c.render({{{"visibility", kLit}}, {}, light}, [&] {
-        c.push(begin_, Push{0, light, 0, 0, {}});
+        c.push(begin_, Push{0, 0, light, 0, {}});
         c.draw_fullscreen(begin_);
         for (const ReceiverPlane& plane : planes_) draw_casters(c, scene, plane, light);
       });
@@ -77,7 +78,7 @@ class PlanarShadows : public Pass {
     const double least = scene.lights[light].type == LightType::directional ? 1e-6 : tolerance;
     if (!(std::abs(height) > least)) return;  // the light lies in the plane and only grazes it
     const glm::dvec4 relative(n, receiver.plane.w + glm::dot(n, eye));
-    const Push push{0, light, float(tolerance), 0, glm::vec4(height < 0 ? -relative : relative)};
+    const Push push{0, 0, light, float(tolerance), glm::vec4(height < 0 ? -relative : relative)};
     c.push(begin_, push);
     c.draw_scene(casters_, Cull::none);
   }

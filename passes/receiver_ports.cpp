@@ -16,7 +16,7 @@ struct BiasDefaults {
 BiasDefaults bias_defaults(const std::string& method) {
   if (method == "constant") return {8.0, 0.0, 0.0};
   if (method == "slope_scaled") return {1.0, 1.5, 0.0};
-  if (method == "receiver_plane") return {1.0, 0.2, 0.0};
+  if (method == "receiver_plane") return {0.5, 0.2, 0.0};
   if (method == "normal_offset") return {1.0, 0.0, 2.0};
   if (method == "back_face") return {1.0, 1.5, 0.0};
   if (method == "midpoint") return {1.0, 1.5, 0.0};
@@ -31,9 +31,10 @@ void declare_encoding(Declaration& d) {
 }
 
 std::string declare_bias(Declaration& d) {
-  return d.choice("bias", "receiver_plane",
-                  {"none", "constant", "slope_scaled", "receiver_plane", "normal_offset", "back_face", "midpoint"},
-                  "how self-shadowing is avoided");
+  return d.choice(
+      "bias", "receiver_plane",
+      {"none", "constant", "slope_scaled", "receiver_plane", "normal_offset", "back_face", "midpoint"},
+      "how self-shadowing is avoided");
 }
 
 ImageShape declare_receiver(Declaration& d) {

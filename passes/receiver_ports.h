@@ -1,5 +1,5 @@
-// What every technique that tests camera pixels against a shadow map has in common: ports and bias parameters, as
-// shaders/glsl/shadow_query.glsl uses them.
+// What every technique that tests camera pixels against a shadow map has in common: ports and bias
+// parameters, as shaders/glsl/shadow_query.glsl uses them.
 #pragma once
 
 #include "engine/context.h"

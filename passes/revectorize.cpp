@@ -12,17 +12,19 @@ class Revectorize : public Pass {
     const ImageShape visibility = declare_receiver(d);
     d.choice("mode", "non_conservative", {"conservative", "non_conservative", "filtered"},
              "visibility function: (3.6), (3.9) or (4.2)");
-    d.choice("walk", "tangent_plane", {"tangent_plane", "kept_lowering"},
-             "depth along the walk: the receiver's tangent plane at each texel, or the remedy of section 3.1.3");
+    d.choice(
+        "walk", "tangent_plane", {"tangent_plane", "kept_lowering"},
+        "depth along the walk: the receiver's tangent plane at each texel, or the remedy of section 3.1.3");
     d.integer("max_size", 16, 1, 1024, "texels", "longest walk along a silhouette, in each direction");
-    d.number("epsilon", 1e-3, 0, 1, "depth range", "kept_lowering: how near the map is lowered for, and by how much");
+    d.number("epsilon", 1e-3, 0, 1, "depth range",
+             "kept_lowering: how near the map is lowered for, and by how much");
     d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
     const uint64_t pixels = uint64_t(visibility.extent.width) * visibility.extent.height;
     d.transient_buffer("silhouette", Access::storage_read | Access::storage_write, {pixels, 4, "uint"},
                        "pixels on one light's silhouette, as y * width + x");
-    d.transient_buffer("arguments",
-                       Access::storage_read | Access::storage_write | Access::indirect | Access::transfer_write,
-                       {4, 4, "uint"}, "workgroups of the walk (x, y, z) and the number of listed pixels");
+    d.transient_buffer(
+        "arguments", Access::storage_read | Access::storage_write | Access::indirect | Access::transfer_write,
+        {4, 4, "uint"}, "workgroups of the walk (x, y, z) and the number of listed pixels");
   }
 
   void prepare(Environment& e) override {

@@ -8,7 +8,9 @@ class ShadowMap : public Pass {
  public:
   void declare(Declaration& d) const override {
     d.kind(PassKind::mixed);
-    d.summary("Renders the scene's depth from every light: one face a spot or directional light, six a point light.");
+    d.summary(
+        "Renders the scene's depth from every light: one face a spot or directional light, six a point "
+        "light.");
     d.cite("Williams 1978; depth encodings: Rzeczkowski 2024, eq. 3.5-3.8; midpoint: Woo 1992");
     const uint32_t size = uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each face"));
     declare_encoding(d);

@@ -28,7 +28,7 @@ void main() {
   float device_depth = depth_at(at).x;
   if (is_background(device_depth) || !on_plane(at, device_depth)) discard;
 #ifdef MASKED
-  Material material = materials[instances[push.instance].info.y];
+  Material material = materials[push.material];
   if (material.base_color.a * in_alpha * texture(base_color_texture, in_uv).a < material.alpha.x) discard;
 #endif
   out_visibility = 0.0;

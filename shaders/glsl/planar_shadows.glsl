@@ -5,10 +5,9 @@
 #include "frame.glsl"
 
 layout(push_constant) uniform Push {
-  uint instance;
+  uint instance, material;
   uint light;
   float tolerance;  // world units: what lies nearer to the plane than this lies on it
-  float unused;
   vec4 plane;       // relative: dot(plane, (p, 1)) is the height over the receiver, on the light's side
 } push;
 

@@ -1,11 +1,10 @@
-// Casters projected from the light onto a plane (Blinn 1988; Macedo 2018, eq. 3.1-3.3). For the plane n.x + d = 0 and the
+// Casters projected from the light onto a plane (Blinn 1988; Rzeczkowski 2024, eq. 3.1-3.3). For the plane n.x + d = 0 and the
 // light l = (l.xyz, l.w), l.w = 0 at infinity, the projection is M = (n.l + d l.w) I - l (n, d)^T; here divided by the
 // light's height n.l + d l.w, which is positive.
 #include "planar_shadows.glsl"
 
 layout(location = 0) in vec3 in_position;
 #ifdef MASKED
-layout(location = 1) in vec2 in_normal;  // unused: there for the layout's sake
 layout(location = 2) in vec2 in_uv;
 layout(location = 3) in vec4 in_color;
 layout(location = 0) out vec2 out_uv;

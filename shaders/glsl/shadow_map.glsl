@@ -5,6 +5,7 @@
 layout(set = 2, binding = 0) uniform sampler2D base_color_texture;
 layout(location = 0) in vec2 in_uv;
 layout(location = 2) in flat uint in_instance;
+layout(location = 3) in float in_alpha;
 #endif
 #ifdef LINEAR_DEPTH
 // (3.7) is applied per fragment: depth multiplied by w/f at the vertices and interpolated in screen space is right at the
@@ -15,7 +16,7 @@ layout(location = 1) in float in_depth;
 void main() {
 #ifdef MASKED
   Material material = materials[instances[in_instance].info.y];
-  if ((material.base_color * texture(base_color_texture, in_uv)).a < material.alpha.x) discard;
+  if (material.base_color.a * in_alpha * texture(base_color_texture, in_uv).a < material.alpha.x) discard;
 #endif
   float depth = gl_FragCoord.z;
 #ifdef LINEAR_DEPTH

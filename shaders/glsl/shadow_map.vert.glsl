@@ -5,7 +5,9 @@ layout(push_constant) uniform Push { uint instance; } push;
 layout(location = 0) in vec3 in_position;
 #ifdef MASKED
 layout(location = 2) in vec2 in_uv;
+layout(location = 3) in vec4 in_color;
 layout(location = 0) out vec2 out_uv;
+layout(location = 3) out float out_alpha;
 layout(location = 2) out flat uint out_instance;
 #endif
 #ifdef LINEAR_DEPTH
@@ -23,6 +25,7 @@ void main() {
   gl_Layer = gl_InstanceIndex;
 #ifdef MASKED
   out_uv = in_uv;
+  out_alpha = in_color.a;
   out_instance = push.instance;
 #endif
 #ifdef LINEAR_DEPTH

@@ -40,7 +40,7 @@ Receiver make_receiver(LightFace face, vec3 q, vec3 n, float size) {
     float towards = max(-dot(n, q), 1e-6 * r.z);
     r.base = 1.0 / r.z;
     vec2 gradient = -n.xy * step / towards;
-    // The plane's tangent against the map: dz per lateral world unit = z * d(1/z)/d(texel) * size...
+    // dz / d(lateral world unit) = z^2 d(1/z) / (z d(lateral tangent)).
     float slope = length(gradient / step) * r.z;
     r.slope = min(slope, MAX_SLOPE);
     r.gradient = gradient * min(1.0, MAX_SLOPE / max(slope, 1e-6));
