@@ -148,6 +148,7 @@ void Device::make_instance(bool validation) {
                           VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
   messenger.pfnUserCallback = on_message;
   messenger.pUserData = this;
+  destroy_messenger_ = vkDestroyDebugUtilsMessengerEXT;
   check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
         "vkCreateDebugUtilsMessengerEXT");
 }

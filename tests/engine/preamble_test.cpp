@@ -115,9 +115,9 @@ TEST(Preamble, flags_and_choices_are_defines) {
   EXPECT_EQ(params.never_read().size(), params.specs().size());
 }
 
-TEST(Preamble, without_ports_and_parameters_is_empty) {
-  const Declaration d;
-  EXPECT_EQ(preamble(d, {}), "");
+TEST(Preamble, without_ports_and_parameters_tells_the_setting_alone) {
+  const Declaration d({{64, 32}, 2, 7}, {}, {});
+  EXPECT_EQ(preamble(d, {}), "#define LIGHT_COUNT 2\n#define FACE_COUNT 7\n");
   EXPECT_TRUE(parameter_block(d.params()).empty());
   EXPECT_TRUE(parameter_defines(d.params()).empty());
 }

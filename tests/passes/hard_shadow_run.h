@@ -13,6 +13,7 @@
 #include "engine/metrics.h"
 #include "engine/reference.h"
 #include "engine/renderer.h"
+#include "tests/shaders/gpu_kernel_helper.h"
 
 namespace gnomon::hard_shadow {
 
@@ -22,10 +23,7 @@ struct Frame {
   std::map<std::string, double> facts;
 };
 
-inline std::shared_ptr<Device> device() {
-  static const std::shared_ptr<Device> opened = open_device({"llvmpipe", true});
-  return opened;
-}
+inline std::shared_ptr<Device> device() { return test::kernel_device(); }
 
 inline RenderSettings settings(bool reversed_z, uint32_t width = 160, uint32_t height = 120) {
   RenderSettings s;
