@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/commands.h"
 #include "engine/error.h"
 #include "engine/preamble.h"
 
@@ -145,16 +146,7 @@ void Context::fill(const std::string& buffer_port, uint32_t value, uint64_t offs
   vkCmdFillBuffer(commands_, physical(buffer_port).buffer.handle(), offset, size, value);
 }
 
-void Context::own_barrier() {
-  VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  all.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  all.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &all;
-  vkCmdPipelineBarrier2(commands_, &info);
-}
+void Context::own_barrier() { full_barrier(commands_); }
 
 void Context::render(const Targets& targets, const std::function<void()>& body) {
   std::vector<VkRenderingAttachmentInfo> colors;

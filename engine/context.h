@@ -10,27 +10,12 @@
 #include <vector>
 
 #include "engine/compile.h"
+#include "engine/device_plan.h"
 #include "engine/gpu_scene.h"
-#include "engine/handle.h"
 #include "engine/pipeline.h"
+#include "engine/renderer.h"
 
 namespace gnomon {
-
-// A resource of the plan on the device.
-struct Physical {
-  GpuImage image;
-  Buffer buffer;
-};
-
-// One node's own state on the device: layouts, descriptor set and parameter block.
-struct NodeState {
-  Handle<VkDescriptorSetLayout> set_layout;
-  Handle<VkPipelineLayout> pipeline_layout;
-  VkDescriptorSet set = VK_NULL_HANDLE;
-  VkDescriptorSet other_set = VK_NULL_HANDLE;  // with the copies of history exchanged; swapped every frame
-  Buffer parameters;
-  std::string preamble;
-};
 
 class Environment {
  public:

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/renderer.h"
+#include "engine/device_info.h"
 
 namespace gnomon {
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <glm/gtc/type_precision.hpp>
 
+#include "engine/commands.h"
 #include "engine/error.h"
 
 namespace gnomon {
@@ -50,35 +51,20 @@ Handle<VkDescriptorSetLayout> make_layout(const std::shared_ptr<Device>& device,
                 "vkCreateDescriptorSetLayout");
 }
 
-void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to) {
-  VkImageMemoryBarrier2 b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-  b.srcStageMask = b.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  b.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  b.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  b.oldLayout = from, b.newLayout = to;
-  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  b.image = image;
-  b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.imageMemoryBarrierCount = 1;
-  info.pImageMemoryBarriers = &b;
-  vkCmdPipelineBarrier2(commands, &info);
-}
-
 GpuImage upload_texture(const std::shared_ptr<Device>& device, const Texture& texture) {
   GpuImage image(device, {{texture.width, texture.height}, 1, 1, VK_FORMAT_R8G8B8A8_SRGB},
                  VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
   Buffer staging(device, texture.rgba.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Place::host);
   std::memcpy(staging.bytes().data(), texture.rgba.data(), texture.rgba.size());
   OneShot once(device);
-  barrier(once.commands(), image.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  change_layout(once.commands(), image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
   VkBufferImageCopy copy{};
   copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   copy.imageExtent = {texture.width, texture.height, 1};
   vkCmdCopyBufferToImage(once.commands(), staging.handle(), image.handle(),
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-  barrier(once.commands(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  change_layout(once.commands(), image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   once.submit_and_wait();
   return image;
 }

@@ -9,27 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "engine/device_info.h"
 #include "engine/graph.h"
 #include "engine/image.h"
 #include "engine/scene.h"
 
 namespace gnomon {
-
-class Device;  // engine/device.h
-
-struct DeviceInfo {
-  std::string name, driver;
-  bool is_cpu = false;
-};
-struct DeviceOptions {
-  std::string name_part;  // part of the device's name, any case; empty: a GPU if there is one, else lavapipe
-  bool validation =
-      false;  // validation and synchronisation-validation layers; see Device::validation_messages
-};
-std::shared_ptr<Device> open_device(const DeviceOptions& options);  // Error: no Vulkan device, no such name
-std::vector<DeviceInfo> list_devices();
-const DeviceInfo& device_info(const Device& device);
-const std::vector<std::string>& validation_messages(const Device& device);
 
 struct RenderSettings {
   uint32_t width = 1280, height = 720;  // pixels

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/device.h"
+#include "engine/pass.h"
 
 namespace gnomon {
 

@@ -1,5 +1,6 @@
 #include "engine/timing.h"
 
+#include "engine/commands.h"
 #include "engine/error.h"
 
 namespace gnomon {
@@ -18,16 +19,7 @@ void Timestamps::reset(VkCommandBuffer commands) {
 }
 
 void Timestamps::stamp(VkCommandBuffer commands, bool alone) {
-  if (alone) {
-    VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-    all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    all.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-    all.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-    info.memoryBarrierCount = 1;
-    info.pMemoryBarriers = &all;
-    vkCmdPipelineBarrier2(commands, &info);
-  }
+  if (alone) full_barrier(commands);
   vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_.get(), used_++);
 }
 
