@@ -46,7 +46,7 @@ std::string complaint(const std::string& name, const Value& value, const std::st
 }
 
 // "1" is the unit of a plain ratio and says nothing to a reader.
-std::string with_unit(std::string text, const std::string& unit) {
+std::string with_unit(const std::string& text, const std::string& unit) {
   return unit.empty() || unit == "1" ? text : text + " " + unit;
 }
 
@@ -211,7 +211,7 @@ BufferShape Declaration::input_buffer(std::string name, Access access, std::stri
 }
 
 BufferShape Declaration::inout_buffer(std::string name, Access access, std::string help) {
-  const BufferShape shape = input_buffer(std::move(name), access, std::move(help));
+  BufferShape shape = input_buffer(std::move(name), access, std::move(help));
   ports_.back().direction = Direction::inout;
   return shape;
 }

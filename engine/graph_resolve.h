@@ -17,6 +17,7 @@ namespace gnomon {
 struct PortKey {
   uint32_t node = 0;  // index into ResolvedGraph::nodes
   std::string port;
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 misreads <=>
   auto operator<=>(const PortKey&) const = default;
 };
 
