@@ -35,6 +35,7 @@ constexpr ValueField value_fields[] = {{"rmse", &ErrorMetrics::rmse},
                                        {"wrongly_lit", &ErrorMetrics::wrongly_lit},
                                        {"wrongly_shadowed", &ErrorMetrics::wrongly_shadowed}};
 constexpr OptionalField optional_fields[] = {{"penumbra_rmse", &ErrorMetrics::penumbra_rmse},
+                                             {"umbra_light", &ErrorMetrics::umbra_light},
                                              {"leak", &ErrorMetrics::leak},
                                              {"over_shadow", &ErrorMetrics::over_shadow},
                                              {"acne", &ErrorMetrics::acne},
@@ -102,10 +103,18 @@ double irradiance(const Light& light, const glm::dvec3& eye, const glm::dvec3& p
   return intensity * std::max(0.0, glm::dot(normal, direction));
 }
 
+constexpr double most_deep_samples = 8192;  // an even sample of the umbra: each costs hundreds of rays
+
+std::optional<double> mean_over(std::span<const float> result, const std::vector<uint32_t>& pixels) {
+  double sum = 0;
+  for (const uint32_t i : pixels) sum += result[i];
+  return pixels.empty() ? std::nullopt : std::optional(sum / static_cast<double>(pixels.size()));
+}
+
 }  // namespace
 
 double measure_acne(std::span<const float> result, const Reference& reference, uint32_t light,
-                    const AcneSettings& acne) {
+                    const EdgeSettings& edges) {
   std::vector<uint32_t> suspects;
   uint64_t counted = 0;
   for (uint32_t i = 0; i < result.size(); ++i) {
@@ -113,14 +122,29 @@ double measure_acne(std::span<const float> result, const Reference& reference, u
     ++counted;
     if (result[i] < 0.5f && reference.visibility[light][i] == 1) suspects.push_back(i);
   }
-  const auto away =
-      acne.tracer->away_from_edges(reference, light, acne.camera, suspects, acne.texels, acne.map_size);
+  const auto away = edges.tracer->away_from_edges(reference, light, edges.camera, suspects, edges.acne_texels,
+                                                  edges.map_size);
   const auto wrong = std::count(away.begin(), away.end(), true);
   return counted ? static_cast<double>(wrong) / static_cast<double>(counted) : nan;
 }
 
+std::vector<uint32_t> deep_umbra(const Reference& reference, uint32_t light, const EdgeSettings& edges) {
+  std::vector<uint32_t> umbra, sample, deep;
+  for (uint32_t i = 0; i < reference.visibility[light].size(); ++i)
+    if (reference.domain[light][i] == Reference::counted && reference.visibility[light][i] == 0)
+      umbra.push_back(i);
+  const double step = std::max(1.0, static_cast<double>(umbra.size()) / most_deep_samples);
+  for (double k = 0; k < static_cast<double>(umbra.size()); k += step)
+    sample.push_back(umbra[static_cast<size_t>(k)]);
+  const auto away = edges.tracer->away_from_edges(reference, light, edges.camera, sample, edges.leak_texels,
+                                                  edges.map_size);
+  for (size_t k = 0; k < sample.size(); ++k)
+    if (away[k]) deep.push_back(sample[k]);
+  return deep;
+}
+
 MeasuredError measure_visibility(const Image& visibility, const Reference& reference,
-                                 const AcneSettings& acne) {
+                                 const EdgeSettings& edges, std::span<const std::vector<uint32_t>> deep) {
   if (visibility.width != reference.width || visibility.height != reference.height)
     fail(fmt::format("the result has {} x {} pixels, the reference {} x {}", visibility.width,
                      visibility.height, reference.width, reference.height));
@@ -129,8 +153,10 @@ MeasuredError measure_visibility(const Image& visibility, const Reference& refer
     const auto result = visibility.plane(channel_name(i));
     ErrorMetrics m = compare_visibility(result, reference.visibility[i], reference.domain[i], reference.width,
                                         reference.height);
-    if (acne.tracer && m.nonfinite > 0) m.acne = nan;
-    if (acne.tracer && m.nonfinite == 0 && m.pixels > 0) m.acne = measure_acne(result, reference, i, acne);
+    const bool measurable = m.nonfinite == 0 && m.pixels > 0;
+    if (edges.tracer && m.nonfinite > 0) m.acne = nan;
+    if (edges.tracer && measurable) m.acne = measure_acne(result, reference, i, edges);
+    if (i < deep.size() && measurable) m.leak = mean_over(result, deep[i]);
     error.lights.push_back(m);
   }
   error.all = over_lights(error.lights);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <vector>
 
 #include "engine/image.h"
@@ -19,23 +20,29 @@ struct MeasuredError {
   ErrorMetrics all;
 };
 
-// What acne needs beyond the two images. Without a tracer it is absent.
-struct AcneSettings {
+// What acne and leak need beyond the two images. Without a tracer they are absent.
+struct EdgeSettings {
   const ReferenceTracer* tracer = nullptr;  // of the scene that the reference shows
   Camera camera;                            // that the reference was traced with
   uint32_t map_size = 1024;                 // texels a side of the shadow map
-  double texels = 2;                        // acne is further than this from any true edge
+  double acne_texels = 2;                   // acne is further than this from any true edge,
+  double leak_texels = 16;                  // leak further than this
 };
 
 // `visibility` as Renderer::read gives it: channels "Y", "light1.Y", ... Error when a channel is missing or
-// the size differs.
+// the size differs. `deep`: of each light, the pixels that leak is measured over, from deep_umbra().
 MeasuredError measure_visibility(const Image& visibility, const Reference& reference,
-                                 const AcneSettings& acne = {});
+                                 const EdgeSettings& edges = {},
+                                 std::span<const std::vector<uint32_t>> deep = {});
 
-// Share of counted pixels that are wrongly shadowed (result < 0.5, reference 1) further than acne.texels from
-// any true edge on the receiver's plane.
+// Pixels in umbra further than edges.leak_texels from any true edge on the receiver's plane, of an even
+// sample of at most 8192 pixels in umbra: where light is leak, not filtering. Depends on the reference alone.
+std::vector<uint32_t> deep_umbra(const Reference& reference, uint32_t light, const EdgeSettings& edges);
+
+// Share of counted pixels that are wrongly shadowed (result < 0.5, reference 1) further than
+// edges.acne_texels from any true edge on the receiver's plane.
 double measure_acne(std::span<const float> result, const Reference& reference, uint32_t light,
-                    const AcneSettings& acne);
+                    const EdgeSettings& edges);
 
 // The image that perfect visibility gives: albedo / pi x sum over lights of irradiance x visibility, linear
 // RGB without ambient, black where there is no geometry. Lambert with the interpolated normal; spot falloff

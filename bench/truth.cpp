@@ -38,8 +38,17 @@ Truth::Truth(std::shared_ptr<const Scene> scene, const ReferenceSettings& settin
       reference_(cached_reference(*scene_, settings, cache)),
       tracer_(*scene_) {}
 
+const std::vector<std::vector<uint32_t>>& Truth::deep_umbra_of(const EdgeSettings& edges) const {
+  auto [found, is_new] = deep_umbra_.try_emplace(edges.map_size);
+  if (is_new)
+    for (uint32_t i = 0; i < reference_.lights; ++i)
+      found->second.push_back(deep_umbra(reference_, i, edges));
+  return found->second;
+}
+
 std::string Truth::error_json(const Image& visibility, const Image* color, const Values& vars) const {
-  MeasuredError error = measure_visibility(visibility, reference_, {&tracer_, camera_, map_size_of(vars), 2});
+  const EdgeSettings edges{&tracer_, camera_, map_size_of(vars)};
+  MeasuredError error = measure_visibility(visibility, reference_, edges, deep_umbra_of(edges));
   if (color != nullptr) {
     if (shaded_.width == 0) shaded_ = shade_reference(*scene_, camera_, reference_);
     error.all.flip = flip(rgb_of(*color), shaded_);

@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
+#include "bench/measure.h"
 #include "engine/image.h"
 #include "engine/params.h"
 #include "engine/reference.h"
@@ -23,8 +25,8 @@ class Truth {
         const std::filesystem::path& cache);
 
   // The `error` object of a result row, as JSON text. `color`: the shaded image, for FLIP; may be nullptr.
-  // `vars`: of the graph; `shadow_map` is the map's side in texels that acne is judged by (1024 when there is
-  // none).
+  // `vars`: of the graph; `shadow_map` is the map's side in texels that acne and leak are judged by (1024
+  // when there is none).
   std::string error_json(const Image& visibility, const Image* color, const Values& vars) const;
   const Reference& reference() const { return reference_; }
 
@@ -33,7 +35,10 @@ class Truth {
   Camera camera_;
   Reference reference_;
   ReferenceTracer tracer_;
+  const std::vector<std::vector<uint32_t>>& deep_umbra_of(const EdgeSettings& edges) const;
   mutable Image shaded_;  // made when first asked for
+  mutable std::map<uint32_t, std::vector<std::vector<uint32_t>>>
+      deep_umbra_;  // by the map's size; a list a light
 };
 
 }  // namespace gnomon

@@ -166,6 +166,12 @@ std::string Declaration::choice(std::string name, std::string standard, std::vec
   return result;
 }
 
+void Declaration::refuse(std::string_view name, std::string_view must_be) {
+  const Value* value = lookup(resolved_, name);
+  if (!value) fail("a pass refuses parameter '" + std::string(name) + "', which it does not declare");
+  value_errors_.push_back(complaint(std::string(name), *value, std::string(must_be)));
+}
+
 ImageShape Declaration::input(std::string name, Access access, bool array, std::string help) {
   check_new(ports_, name, "port");
   Port port = make_port(std::move(name), Direction::in, access, false, array, std::move(help));

@@ -113,7 +113,7 @@ void count_pixels(ErrorMetrics& m, std::span<const float> result, std::span<cons
 // No figure can be given: an image with a NaN must not look good, an empty domain must not look perfect.
 void set_undefined(ErrorMetrics& m) {
   m.rmse = m.mae = m.max = m.bias = m.misclassified = m.wrongly_lit = m.wrongly_shadowed = nan;
-  if (m.nonfinite > 0) m.penumbra_rmse = m.leak = m.over_shadow = m.ssim = nan;
+  if (m.nonfinite > 0) m.penumbra_rmse = m.umbra_light = m.over_shadow = m.ssim = nan;
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ ErrorMetrics compare_visibility(std::span<const float> result, std::span<const f
     set_undefined(m);
     return m;
   }
-  Mean square, absolute, signed_error, lit, shadowed, penumbra, leak, over_shadow;
+  Mean square, absolute, signed_error, lit, shadowed, penumbra, umbra_light, over_shadow;
   for (size_t i = 0; i < size; ++i) {
     if (domain[i] != 0) continue;
     const double r = result[i], truth = reference[i], error = r - truth;
@@ -141,7 +141,7 @@ ErrorMetrics compare_visibility(std::span<const float> result, std::span<const f
     lit.add(r >= 0.5 && truth < 0.5);
     shadowed.add(r < 0.5 && truth >= 0.5);
     if (truth > 0 && truth < 1) penumbra.add(error * error);
-    if (truth == 0) leak.add(r);
+    if (truth == 0) umbra_light.add(r);
     if (truth == 1) over_shadow.add(1 - r);
   }
   m.rmse = std::sqrt(square.value());
@@ -151,7 +151,7 @@ ErrorMetrics compare_visibility(std::span<const float> result, std::span<const f
   m.wrongly_shadowed = shadowed.value();
   m.misclassified = m.wrongly_lit + m.wrongly_shadowed;
   if (penumbra.count) m.penumbra_rmse = std::sqrt(penumbra.value());
-  m.leak = leak.optional();
+  m.umbra_light = umbra_light.optional();
   m.over_shadow = over_shadow.optional();
   m.ssim = ssim_over_domain(result, reference, domain, width, height);
   return m;
@@ -182,8 +182,12 @@ const std::vector<MetricInfo>& metric_infos() {
        own},
       {"penumbra_rmse", "RMSE over counted pixels with 0 < reference < 1; absent without any",
        "visibility, 0..1", own},
-      {"leak", "mean result over counted pixels with reference = 0; absent without any", "visibility, 0..1",
-       own},
+      {"umbra_light", "mean result over counted pixels with reference = 0; absent without any",
+       "visibility, 0..1", own},
+      {"leak",
+       "mean result over counted pixels with reference = 0 whose tangent plane is in umbra everywhere within "
+       "16 shadow texels, of which an even sample is looked at; absent without any",
+       "visibility, 0..1", own},
       {"over_shadow", "mean (1 - result) over counted pixels with reference = 1; absent without any",
        "visibility, 0..1", own},
       {"acne",

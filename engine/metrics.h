@@ -25,7 +25,8 @@ struct ErrorMetrics {
   double misclassified = 0;                      // share of pixels with (result >= 0.5) != (reference >= 0.5)
   double wrongly_lit = 0, wrongly_shadowed = 0;  // the two parts of misclassified, as shares
   std::optional<double> penumbra_rmse;           // RMSE where 0 < reference < 1
-  std::optional<double> leak;                    // mean result where reference is 0
+  std::optional<double> umbra_light;             // mean result where reference is 0
+  std::optional<double> leak;                    // the same away from any true edge: light leak
   std::optional<double> over_shadow;             // mean (1 - result) where reference is 1
   std::optional<double> acne;  // share of counted pixels wrongly shadowed away from any true edge
   std::optional<double> ssim;  // Wang et al. 2004, 11x11 Gaussian window, sigma 1.5, L = 1; 1 = equal

@@ -135,6 +135,8 @@ class Declaration {
                 std::string help);
   std::string choice(std::string name, std::string standard, std::vector<std::string> choices,
                      std::string help);
+  // A declared parameter's value is refused for what its range cannot say: "'kernel' is 4: must be odd".
+  void refuse(std::string_view name, std::string_view must_be);
 
   // Image ports. `array`: GLSL sees an array with layers. Return the connected image's shape (listing: 1x1).
   ImageShape input(std::string name, Access access, bool array, std::string help);

@@ -50,6 +50,12 @@ ImageShape declare_receiver(Declaration& d) {
   return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
 }
 
+int64_t declare_kernel(Declaration& d) {
+  const int64_t width = d.integer("kernel", 15, 1, 63, "texels", "width of the filter, odd");
+  if (width % 2 == 0) d.refuse("kernel", "odd");
+  return width;
+}
+
 void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines) {
   for (const Light& light : e.scene().lights) {
     const bool point = light.type == LightType::point;
@@ -61,13 +67,13 @@ void PerLight::prepare(Environment& e, const std::string& file, const Defines& d
   }
 }
 
-const Pipeline& PerLight::ready(Context& c, uint32_t light) const {
+const Pipeline& PerLight::ready(Context& c, uint32_t light, std::array<uint32_t, 2> part) const {
   const auto& faces = c.scene().faces();
   uint32_t first = 0;
   while (first < faces.size() && faces[first].light != light) ++first;
   const bool point = c.scene().scene().lights[light].type == LightType::point;
   const Pipeline& pipeline = point ? six_faces_ : one_face_;
-  c.push(pipeline, std::array<uint32_t, 2>{light, first});
+  c.push(pipeline, std::array<uint32_t, 4>{light, first, part[0], part[1]});
   return pipeline;
 }
 
@@ -75,8 +81,9 @@ void PerLight::dispatch_over(Context& c, uint32_t light, Extent pixels) const {
   c.dispatch_over(ready(c, light), pixels);
 }
 
-void PerLight::dispatch_indirect(Context& c, uint32_t light, const std::string& port) const {
-  c.dispatch_indirect(ready(c, light), port);
+void PerLight::dispatch_indirect(Context& c, uint32_t light, const std::string& port,
+                                 std::array<uint32_t, 2> part) const {
+  c.dispatch_indirect(ready(c, light, part), port);
 }
 
 void report_bias(Environment& e) {

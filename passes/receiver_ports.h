@@ -2,6 +2,8 @@
 // parameters, as shaders/glsl/shadow_query.glsl uses them.
 #pragma once
 
+#include <array>
+
 #include "engine/context.h"
 #include "engine/pass.h"
 
@@ -15,16 +17,22 @@ std::string declare_bias(Declaration& d);
 // `bias_normal`. Returns the shape of a visibility image: one layer a light.
 ImageShape declare_receiver(Declaration& d);
 
+// Parameter `kernel`: width of a filter in the shadow map, odd, in texels.
+int64_t declare_kernel(Declaration& d);
+
 // A compute shader that includes shadow_query.glsl, run for one light at a time.
 class PerLight {
  public:
   void prepare(Environment& e, const std::string& file, const Defines& defines = {});
   void dispatch_over(Context& c, uint32_t light, Extent pixels) const;
-  void dispatch_indirect(Context& c, uint32_t light, const std::string& port) const;
+  // `part`: for passes that do their work in several dispatches.
+  void dispatch_indirect(Context& c, uint32_t light, const std::string& port,
+                         std::array<uint32_t, 2> part = {}) const;
 
  private:
-  const Pipeline& ready(Context& c, uint32_t light) const;  // with its push constants
-  Pipeline one_face_, six_faces_;                           // only those that the scene's lights need
+  const Pipeline& ready(Context& c, uint32_t light,
+                        std::array<uint32_t, 2> part = {}) const;  // push constants too
+  Pipeline one_face_, six_faces_;                                  // only those that the scene's lights need
 };
 
 // Puts the biases' size in world units into run.json, at the middle of each map face's depth range.

@@ -1,4 +1,5 @@
 #include "engine/context.h"
+#include "passes/pixel_list.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {
@@ -22,9 +23,8 @@ class Revectorize : public Pass {
     const uint64_t pixels = uint64_t(visibility.extent.width) * visibility.extent.height;
     d.transient_buffer("silhouette", Access::storage_read | Access::storage_write, {pixels, 4, "uint"},
                        "pixels on one light's silhouette, as y * width + x");
-    d.transient_buffer(
-        "arguments", Access::storage_read | Access::storage_write | Access::indirect | Access::transfer_write,
-        {4, 4, "uint"}, "workgroups of the walk (x, y, z) and the number of listed pixels");
+    d.transient_buffer("arguments", kListArguments, {4, 4, "uint"},
+                       "workgroups of the walk (x, y, z) and the number of listed pixels");
   }
 
   void prepare(Environment& e) override {
@@ -37,7 +37,7 @@ class Revectorize : public Pass {
     const ImageShape shape = c.shape("visibility");
     for (uint32_t light = 0; light < shape.layers; ++light) {
       if (light > 0) c.own_barrier();  // the list is used again
-      clear_list(c);
+      clear_list(c, "arguments");
       c.own_barrier();
       find_.dispatch_over(c, light, shape.extent);
       c.own_barrier();
@@ -46,14 +46,6 @@ class Revectorize : public Pass {
   }
 
  private:
-  // No workgroups in x, one in y and z; no pixels.
-  static void clear_list(Context& c) {
-    constexpr uint64_t kWord = 4;  // bytes
-    c.fill("arguments", 0, 0, kWord);
-    c.fill("arguments", 1, kWord, 2 * kWord);
-    c.fill("arguments", 0, 3 * kWord, kWord);
-  }
-
   PerLight find_, walk_;
 };
 

@@ -50,11 +50,22 @@ bool is_background(float device_depth) { return frame.depth.y != 0.0 ? device_de
 float view_depth(float device_depth) {
   return frame.depth.x / (frame.depth.y != 0.0 ? device_depth : 1.0 - device_depth);
 }
+// Relative position at view depth 1 of a place in the image, in pixels.
+vec3 view_ray(vec2 place) { return frame.ray_corner.xyz + place.x * frame.ray_dx.xyz + place.y * frame.ray_dy.xyz; }
 // Relative position of a pixel's centre: view ray times linear depth, so nothing cancels at far origins.
-vec3 relative_position(ivec2 pixel, float device_depth) {
-  vec2 centre = vec2(pixel) + 0.5;
-  vec3 ray = frame.ray_corner.xyz + centre.x * frame.ray_dx.xyz + centre.y * frame.ray_dy.xyz;
-  return view_depth(device_depth) * ray;
+vec3 relative_position(ivec2 pixel, float device_depth) { return view_depth(device_depth) * view_ray(vec2(pixel) + 0.5); }
+// Relative position of what a place in the image shows of the plane through `p` with unit normal `n`; `p` itself where the
+// plane is seen edge-on.
+vec3 plane_position(vec3 p, vec3 n, vec2 place) {
+  vec3 ray = view_ray(place);
+  float along = dot(n, ray), to_plane = dot(n, p);
+  bool in_front = along * to_plane > 1e-6 * length(ray) * abs(to_plane);  // 1e-6: sine of the angle between ray and plane
+  return in_front ? (to_plane / along) * ray : p;
+}
+// The place in the image, in pixels, of a relative position in front of the camera.
+vec2 image_place(vec3 p) {
+  vec4 clip = frame.clip_from_relative * vec4(p, 1.0);
+  return (0.5 + 0.5 * clip.xy / clip.w) * frame.viewport.xy;
 }
 
 // Unit vector from `p` to the light, and the distance (infinite for directional lights).
@@ -66,6 +77,12 @@ vec3 to_light(Light light, vec3 p, out float distance) {
   vec3 d = light.position.xyz - p;
   distance = length(d);
   return d / distance;
+}
+
+// Does a surface with unit geometric normal `n` at `p` face the light? Where not, it is in shadow whatever lies between.
+bool faces_light(Light light, vec3 p, vec3 n) {
+  float unused;
+  return dot(n, to_light(light, p, unused)) > 0.0;
 }
 
 // The face of the shadow map that sees `p`: of a point light, the one of its major axis (+x -x +y -y +z -z).

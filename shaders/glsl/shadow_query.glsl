@@ -5,8 +5,8 @@
 #include "lib/receiver_plane.glsl"
 
 // A dispatch is for one light. Its index, and the only face of a light that has one, come as push constants, so that every
-// load that depends on them alone is uniform.
-layout(push_constant) uniform Push { uint light, face; } push;
+// load that depends on them alone is uniform. `part`: of a pass that does its work in several dispatches.
+layout(push_constant) uniform Push { uint light, face; uvec2 part; } push;
 
 const int PIXEL_BACKGROUND = 0;  // no geometry: lit
 const int PIXEL_AWAY = 1;        // the geometric normal faces away from the light: in shadow, whatever the map says
@@ -92,6 +92,18 @@ bool is_lit_cross(Query query, ivec2 texel, out bvec4 neighbours) {
   neighbours.z = receiver_depth(face, query.plane, centre - vec2(0.0, 1.0), linear) <= low.z;
   neighbours.w = receiver_depth(face, query.plane, centre + vec2(0.0, 1.0), linear) <= high.x;
   return receiver_depth(face, query.plane, centre, linear) <= low.y;
+}
+
+// (3.2) at `texel` and its neighbours right, below and diagonally below, which one gather reads: x (0,1), y (1,1), z (1,0),
+// w (0,0), as a gather orders them; 1 is lit. Beyond the map's border its last texels are repeated.
+vec4 lit_quad(Query query, ivec2 texel) {
+  ivec2 size = textureSize(shadow_map, 0).xy;
+  vec4 map = textureGather(shadow_map, vec3(vec2(texel + 1) / vec2(size), query.face));
+  vec2 low = vec2(clamp(texel, ivec2(0), size - 1)) + 0.5;
+  vec2 high = vec2(clamp(texel + 1, ivec2(0), size - 1)) + 0.5;
+  vec4 receiver = receiver_depths(faces[query.face], query.plane, vec4(low.x, high.x, high.x, low.x),
+                                  vec4(high.y, high.y, low.y, low.y), ENCODING == ENCODING_LINEAR);
+  return vec4(lessThanEqual(receiver, map));
 }
 
 float unmapped_visibility(int state) { return state == PIXEL_AWAY ? 0.0 : 1.0; }

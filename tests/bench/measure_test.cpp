@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -79,7 +81,7 @@ TEST(Measure, AcneIsWhatLiesAwayFromEdges) {
   const Scene scene = square_over_plane(light(LightType::spot, {0, 6, 0}));
   const Reference r = trace(scene);
   const ReferenceTracer tracer(scene);
-  const AcneSettings acne{&tracer, scene.cameras[0], 128, 2};
+  const EdgeSettings acne{&tracer, scene.cameras[0], 128, 2};
   const glm::dvec3 eye(scene.cameras[0].world_from_camera[3]);
   Image image = perfect(r);
   uint64_t dark = 0, expected = 0, counted = 0;
@@ -100,6 +102,30 @@ TEST(Measure, AcneIsWhatLiesAwayFromEdges) {
   const MeasuredError e = measure_visibility(image, r, acne);
   EXPECT_DOUBLE_EQ(e.all.wrongly_shadowed, double(dark) / double(counted));
   EXPECT_DOUBLE_EQ(*e.all.acne, double(expected) / double(counted));
+}
+
+// Light in the umbra counts as leak only where no edge is near: one pixel in the middle of the shadow, one at
+// its border.
+TEST(Measure, LeakIsLightDeepInTheUmbra) {
+  const Scene scene = square_over_plane(light(LightType::spot, {0, 6, 0}));
+  const Reference r = trace(scene);
+  const ReferenceTracer tracer(scene);
+  const EdgeSettings edges{&tracer, scene.cameras[0], 128, 2, 3};
+  const std::vector<std::vector<uint32_t>> deep{deep_umbra(r, 0, edges)};
+  ASSERT_FALSE(deep[0].empty());
+  std::vector<uint32_t> shallow;
+  for (uint32_t i = 0; i < r.visibility[0].size(); ++i)
+    if (r.domain[0][i] == Reference::counted && r.visibility[0][i] == 0 &&
+        std::find(deep[0].begin(), deep[0].end(), i) == deep[0].end())
+      shallow.push_back(i);
+  ASSERT_FALSE(shallow.empty());
+  Image image = perfect(r);
+  image.plane(0)[shallow.front()] = 1;
+  EXPECT_EQ(*measure_visibility(image, r, edges, deep).all.leak, 0);
+  image.plane(0)[deep[0].front()] = 0.5;
+  const ErrorMetrics all = measure_visibility(image, r, edges, deep).all;
+  EXPECT_DOUBLE_EQ(*all.leak, 0.5 / static_cast<double>(deep[0].size()));
+  EXPECT_DOUBLE_EQ(*all.umbra_light, 1.5 / static_cast<double>(deep[0].size() + shallow.size()));
 }
 
 TEST(Measure, NonfiniteReachesTheRow) {
@@ -123,11 +149,14 @@ TEST(Measure, RowHasTheNamesOfTheDesign) {
   const Scene scene = square_over_plane(light(LightType::spot, {0, 6, 0}));
   const Reference r = trace(scene);
   const ReferenceTracer tracer(scene);
-  MeasuredError e = measure_visibility(perfect(r), r, {&tracer, scene.cameras[0], 128, 2});
+  const EdgeSettings edges{&tracer, scene.cameras[0], 128, 2, 2};
+  const std::vector<std::vector<uint32_t>> deep{deep_umbra(r, 0, edges)};
+  MeasuredError e = measure_visibility(perfect(r), r, edges, deep);
   e.all.flip = 0.25;
   const nlohmann::json json = to_json(e);
-  for (const char* name : {"rmse", "mae", "max", "bias", "misclassified", "wrongly_lit", "wrongly_shadowed",
-                           "leak", "over_shadow", "acne", "ssim", "flip", "pixels", "excluded", "nonfinite"})
+  for (const char* name :
+       {"rmse", "mae", "max", "bias", "misclassified", "wrongly_lit", "wrongly_shadowed", "umbra_light",
+        "leak", "over_shadow", "acne", "ssim", "flip", "pixels", "excluded", "nonfinite"})
     EXPECT_TRUE(json.contains(name)) << name;
   EXPECT_FALSE(json.contains("penumbra_rmse"));  // hard shadows have none
   EXPECT_FALSE(json.contains("lights"));

@@ -41,7 +41,7 @@ TEST(Visibility, TwoByTwoByHand) {
   EXPECT_DOUBLE_EQ(m.wrongly_lit, 0.25);
   EXPECT_DOUBLE_EQ(m.wrongly_shadowed, 0.25);
   EXPECT_DOUBLE_EQ(*m.penumbra_rmse, std::sqrt(5.0 / 32));
-  EXPECT_DOUBLE_EQ(*m.leak, 0);
+  EXPECT_DOUBLE_EQ(*m.umbra_light, 0);
   EXPECT_DOUBLE_EQ(*m.over_shadow, 1);
   EXPECT_FALSE(m.acne);
   EXPECT_FALSE(m.flip);
@@ -56,7 +56,7 @@ TEST(Visibility, ExcludedPixelsDoNotCount) {
   EXPECT_DOUBLE_EQ(m.rmse, std::sqrt((1.0 / 16 + 1.0 / 4) / 2));
   EXPECT_DOUBLE_EQ(m.bias, -0.125);
   EXPECT_DOUBLE_EQ(m.misclassified, 0);  // 0.5 counts as lit
-  EXPECT_DOUBLE_EQ(*m.leak, 0.25);
+  EXPECT_DOUBLE_EQ(*m.umbra_light, 0.25);
   EXPECT_DOUBLE_EQ(*m.over_shadow, 0.5);
   EXPECT_FALSE(m.penumbra_rmse);
 }
@@ -78,7 +78,7 @@ TEST(Visibility, NonfiniteFailsEvenWhereExcluded) {
           compare_visibility(Values{bad, 1, 0, 1}, Values{0, 1, 0, 1}, Domain{domain, 0, 0, 0}, 2, 2);
       EXPECT_EQ(m.nonfinite, 1u);
       for (const double v : {m.rmse, m.mae, m.max, m.bias, m.misclassified, m.wrongly_lit, m.wrongly_shadowed,
-                             *m.ssim, *m.leak})
+                             *m.ssim, *m.umbra_light})
         EXPECT_TRUE(std::isnan(v));
     }
 }
@@ -224,7 +224,7 @@ TEST(MetricInfos, AreNamedOnceAndComplete) {
   }
   for (const char* name :
        {"rmse", "mae", "max", "bias", "misclassified", "wrongly_lit", "wrongly_shadowed", "penumbra_rmse",
-        "leak", "over_shadow", "acne", "ssim", "flip", "pixels", "excluded", "nonfinite"})
+        "umbra_light", "leak", "over_shadow", "acne", "ssim", "flip", "pixels", "excluded", "nonfinite"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
 

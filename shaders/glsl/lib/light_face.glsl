@@ -39,6 +39,11 @@ float encode_perspective(LightFace face, float inverse_z) {
   float scale = face.range.y / (face.range.y - face.range.x);
   return scale - scale * face.range.x * inverse_z;
 }
+vec4 encode_linear(LightFace face, vec4 z) { return (z - face.range.x) / (face.range.y - face.range.x); }
+vec4 encode_perspective(LightFace face, vec4 inverse_z) {
+  float scale = face.range.y / (face.range.y - face.range.x);
+  return scale - scale * face.range.x * inverse_z;
+}
 float decode_linear(LightFace face, float d) { return face.range.x + d * (face.range.y - face.range.x); }
 float decode_perspective(LightFace face, float d) {
   float scale = face.range.y / (face.range.y - face.range.x);

@@ -67,4 +67,12 @@ float receiver_depth(LightFace face, Receiver r, vec2 at, bool linear) {
   return min(linear ? encode_linear(face, 1.0 / value) : encode_perspective(face, value), 1.0);
 }
 
+// The same at four positions, given by their coordinates.
+vec4 receiver_depths(LightFace face, Receiver r, vec4 x, vec4 y, bool linear) {
+  vec4 value = r.base + r.gradient.x * (x - r.texel.x) + r.gradient.y * (y - r.texel.y);
+  if (is_orthographic(face)) return min(encode_linear(face, value), 1.0);
+  value = max(value, 1.0 / (1e4 * r.z));
+  return min(linear ? encode_linear(face, 1.0 / value) : encode_perspective(face, value), 1.0);
+}
+
 #endif

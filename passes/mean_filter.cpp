@@ -1,0 +1,19 @@
+#include "passes/strip_filter.h"
+
+namespace gnomon {
+namespace {
+
+class MeanFilter : public StripFilter {
+ public:
+  MeanFilter() : StripFilter("mean_filter.glsl") {}
+  void declare(Declaration& d) const override {
+    d.summary("Averages visibility over each pixel's surroundings on its own surface, in place.");
+    d.cite("Macedo 2018, ch. 4.2.3, eq. 4.4-4.5");
+    StripFilter::declare(d);
+  }
+};
+
+GNOMON_PASS("mean_filter", MeanFilter);
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,38 @@
+#include "engine/context.h"
+#include "passes/receiver_ports.h"
+
+namespace gnomon {
+namespace {
+
+class PercentageCloserFilter : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.summary("Averages the shadow tests around every camera pixel's place in the shadow map.");
+    d.cite("Reeves, Salesin and Cook 1987; Macedo 2018, ch. 2.4");
+    const ImageShape visibility = declare_receiver(d);
+    declare_kernel(d);
+    d.choice(
+        "sampling", "box", {"box", "smooth_box", "vogel"},
+        "box of whole texels; box about the receiver's exact place, whose border texels weigh in part; or "
+        "Vogel's spiral over a disc");
+    d.integer("samples", 32, 1, 1024, "samples", "vogel: tests a pixel");
+    d.flag("rotate", true, "vogel: turn the spiral from pixel to pixel, which makes bands into noise");
+    d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
+  }
+  void prepare(Environment& e) override {
+    filter_.prepare(e, "pcf.glsl");
+    report_bias(e);
+  }
+  void record(Context& c) override {
+    const ImageShape shape = c.shape("visibility");
+    for (uint32_t light = 0; light < shape.layers; ++light) filter_.dispatch_over(c, light, shape.extent);
+  }
+
+ private:
+  PerLight filter_;
+};
+
+GNOMON_PASS("pcf", PercentageCloserFilter);
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,99 @@
+#include "passes/strip_filter.h"
+
+#include <algorithm>
+#include <glm/glm.hpp>
+
+namespace gnomon {
+namespace {
+
+// As in shaders/glsl/strip_filter.glsl.
+constexpr uint32_t kCell = 8, kStrip = 8, kListGroup = 64;  // pixels; cells; invocations
+constexpr uint64_t kWord = 4;                               // bytes
+constexpr uint64_t kAlongX = 0, kAlongY = 4, kReach = 8, kControlWords = 9;
+
+constexpr Access kList = Access::storage_read | Access::storage_write;
+
+constexpr uint32_t divide_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
+
+struct Strips {
+  uint32_t cells_x, cells_y, along_x, along_y, layers;
+  explicit Strips(const ImageShape& shape)
+      : cells_x(divide_up(shape.extent.width, kCell)),
+        cells_y(divide_up(shape.extent.height, kCell)),
+        along_x(divide_up(cells_x, kStrip) * cells_y),
+        along_y(cells_x * divide_up(cells_y, kStrip)),
+        layers(shape.layers) {}
+};
+
+// View depth of the scene's middle.
+double middle_depth(const Scene& scene, uint32_t camera) {
+  const glm::dvec3 eye(scene.cameras[camera].world_from_camera[3]);
+  return std::max(glm::length(scene.bounds.centre() - eye), 1e-30);
+}
+
+void clear_lists(Context& c) {
+  for (const uint64_t list : {kAlongX, kAlongY}) {
+    c.fill("control", 0, list * kWord, 2 * kWord);    // workgroups in x and y
+    c.fill("control", 1, (list + 2) * kWord, kWord);  // in z
+    c.fill("control", 0, (list + 3) * kWord, kWord);  // strips
+  }
+  c.fill("control", 0, kReach * kWord, kWord);
+}
+
+}  // namespace
+
+void StripFilter::declare(Declaration& d) const {
+  const ImageShape shape = d.inout("visibility", Access::storage_read | Access::storage_write, true,
+                                   "what is filtered; a layer a light");
+  d.input("depth", Access::sampled, false, "the camera's device depth");
+  d.input("geometric", Access::sampled, false, "octahedral geometric normal");
+  d.number(
+      "width", 15, 1, 63, "pixels",
+      "of the window at the reference depth; it goes with 1/depth, up to 63 pixels (Macedo 2018, eq. 4.4)");
+  d.number("reference_depth", 0, 0, 1e9, "world units",
+           "view depth at which the window has its width; 0: the camera's distance to the scene's middle");
+  d.number("depth_tolerance", 1e-3, 0, 1, "of the view depth",
+           "distance from each other's tangent plane at which neighbouring pixels still are one surface");
+  const Strips strips(shape);
+  const uint64_t layers = shape.layers;
+  d.transient("rows", kList, true, {shape.extent, shape.layers, 1, VK_FORMAT_R32_SFLOAT}, "filtered along x");
+  d.transient_buffer("cell_states", kList, {uint64_t(strips.cells_x) * strips.cells_y * layers, 4, "uint"},
+                     "of each cell of 8x8 pixels: all in umbra, all lit, or mixed");
+  d.transient_buffer("strip_flags", kList, {strips.along_y * layers, 4, "uint"},
+                     "1: the strip along y is listed");
+  d.transient_buffer("strips_y", kList, {strips.along_y * layers, 4, "uint"}, "strips along y to filter");
+  d.transient_buffer("strips_x", kList, {strips.along_x * layers, 4, "uint"}, "strips along x to filter");
+  d.transient_buffer("control", kList | Access::indirect | Access::transfer_write, {kControlWords, 4, "uint"},
+                     "arguments of both lists, and the reach of the widest filter in pixels");
+}
+
+void StripFilter::prepare(Environment& e) {
+  classify_ = e.compute("strip_filter_classify.glsl");
+  list_y_ = e.compute("strip_filter_list_y.glsl");
+  list_x_ = e.compute("strip_filter_list_x.glsl");
+  along_x_ = e.compute(shader_);
+  along_y_ = e.compute(shader_, {{"ALONG_Y_AXIS", "1"}});
+  const double given = e.params().number("reference_depth");
+  reference_depth_ = float(given > 0 ? given : middle_depth(e.scene(), e.settings().camera));
+  e.fact("reference_depth", reference_depth_);
+}
+
+void StripFilter::record(Context& c) {
+  const Strips strips(c.shape("visibility"));
+  const auto run = [&](const Pipeline& pipeline, auto&& dispatch) {
+    c.own_barrier();
+    c.bind(pipeline);
+    c.push(pipeline, reference_depth_);
+    dispatch(pipeline);
+  };
+  clear_lists(c);
+  run(classify_, [&](const Pipeline& p) { c.dispatch(p, strips.cells_x, strips.cells_y, strips.layers); });
+  run(list_y_,
+      [&](const Pipeline& p) { c.dispatch(p, divide_up(strips.along_y, kListGroup), 1, strips.layers); });
+  run(list_x_,
+      [&](const Pipeline& p) { c.dispatch(p, divide_up(strips.along_x, kListGroup), 1, strips.layers); });
+  run(along_x_, [&](const Pipeline& p) { c.dispatch_indirect(p, "control", kAlongX * kWord); });
+  run(along_y_, [&](const Pipeline& p) { c.dispatch_indirect(p, "control", kAlongY * kWord); });
+}
+
+}  // namespace gnomon
