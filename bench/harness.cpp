@@ -98,12 +98,17 @@ class SuiteRun {
             {"reference", {{"samples", suite_.samples}}}};
   }
 
+  static bool runs_at(const SuiteConfig& config, const Extent& size) {
+    return std::find(config.sizes.begin(), config.sizes.end(), size) != config.sizes.end();
+  }
+
   void plan() {
     size_t index = 0;
     for (const fs::path& scene : suite_.scenes) {
-      for (const Extent& size : suite_.sizes) {
+      for (const Extent& size : all_sizes(suite_)) {
         Place place{scene, size, {}};
         for (size_t i = 0; i < suite_.configs.size(); ++i) {
+          if (!runs_at(suite_.configs[i], size)) continue;
           if (index++ % options_.shards != options_.shard - 1) continue;
           if (finished_.count(row_of(suite_, options_, place, suite_.configs[i]).key) != 0)
             ++result_.resumed;

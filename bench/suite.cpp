@@ -112,7 +112,7 @@ bool is_size(const json& value) {
          value[1].is_number_integer();
 }
 
-void read_size(Reading& reading, const json& value, const std::string& place) {
+void read_size(Reading& reading, const json& value, const std::string& place, std::vector<Extent>& sizes) {
   const auto side = [&](size_t i) { return value[i].get<long long>(); };
   if (!is_size(value)) {
     reading.problems.add("a size must be two integers", reading.file, place, "[1280, 720]");
@@ -121,22 +121,26 @@ void read_size(Reading& reading, const json& value, const std::string& place) {
         fmt::format("size {}x{}: each side must be in 1..{} pixels", side(0), side(1), max_side),
         reading.file, place);
   } else {
-    reading.suite.sizes.push_back({static_cast<uint32_t>(side(0)), static_cast<uint32_t>(side(1))});
+    sizes.push_back({static_cast<uint32_t>(side(0)), static_cast<uint32_t>(side(1))});
   }
 }
 
-void read_sizes(Reading& reading, const json* size, const std::string& place) {
-  if (size == nullptr) {
-    reading.suite.sizes.push_back({1280, 720});
-  } else if (size->is_array() && !size->empty() && (*size)[0].is_array()) {
-    for (size_t i = 0; i < size->size(); ++i) read_size(reading, (*size)[i], fmt::format("{}/{}", place, i));
+// `standard`: where there are none.
+std::vector<Extent> read_sizes(Reading& reading, const json* size, const std::string& place,
+                               const std::vector<Extent>& standard) {
+  if (size == nullptr) return standard;
+  std::vector<Extent> sizes;
+  if (size->is_array() && !size->empty() && (*size)[0].is_array()) {
+    for (size_t i = 0; i < size->size(); ++i)
+      read_size(reading, (*size)[i], fmt::format("{}/{}", place, i), sizes);
   } else {
-    read_size(reading, *size, place);
+    read_size(reading, *size, place, sizes);
   }
+  return sizes;
 }
 
-void add_configs(Reading& reading, const std::string& name, const json* set, size_t entry,
-                 const std::string& place) {
+void add_configs(Reading& reading, const std::string& name, const json* set, const std::vector<Extent>& sizes,
+                 size_t entry, const std::string& place) {
   fs::path file;
   std::vector<Values> combinations{{}};
   Problems found;
@@ -147,7 +151,7 @@ void add_configs(Reading& reading, const std::string& name, const json* set, siz
   std::set<std::string> told;  // the combinations of one sweep share most of their mistakes
   for (const Values& values : combinations) {
     try {
-      reading.suite.configs.push_back({load_graph(find_graph(name), values), values, entry, 0});
+      reading.suite.configs.push_back({load_graph(find_graph(name), values), values, entry, sizes, 0});
     } catch (const Error& error) {
       for (const Problem& problem : error.problems()) {
         if (!told.insert(to_string(problem)).second) continue;
@@ -169,13 +173,15 @@ void read_graphs(Reading& reading, const json* graphs, const std::string& place)
     const json& entry = (*graphs)[i];
     const std::string here = fmt::format("{}/{}", place, i);
     if (entry.is_string()) {
-      add_configs(reading, entry.get<std::string>(), nullptr, i, here);
+      add_configs(reading, entry.get<std::string>(), nullptr, reading.suite.sizes, i, here);
     } else if (entry.is_object()) {
       ObjectReader object(entry, reading.file, here, reading.problems);
       const std::string name = object.required_text("name");
       const json* set = object.find("set");
+      const auto sizes =
+          read_sizes(reading, object.find("size"), object.place_of("size"), reading.suite.sizes);
       object.finish();
-      if (!name.empty()) add_configs(reading, name, set, i, here);
+      if (!name.empty()) add_configs(reading, name, set, sizes, i, here);
     } else {
       reading.problems.add("a graph must be a name or {\"name\": ..., \"set\": {...}}", reading.file, here);
     }
@@ -258,7 +264,7 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
                  "1");
   object.find("comment");
   read_scenes(reading, object.find("scenes"), object.place_of("scenes"));
-  read_sizes(reading, object.find("size"), object.place_of("size"));
+  suite.sizes = read_sizes(reading, object.find("size"), object.place_of("size"), {{1280, 720}});
   suite.camera = read_count(object, problems, file.string(), "camera", 0, 0, 1000);
   suite.warmup = read_count(object, problems, file.string(), "warmup", suite.warmup, 1, 1000);
   suite.repeat = read_count(object, problems, file.string(), "repeat", suite.repeat, 1, 100000);
@@ -283,6 +289,14 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
   if (problems.empty()) match_baselines(reading, baseline_place);
   problems.raise();
   return suite;
+}
+
+std::vector<Extent> all_sizes(const Suite& suite) {
+  std::vector<Extent> all = suite.sizes;
+  for (const SuiteConfig& config : suite.configs)
+    for (const Extent& size : config.sizes)
+      if (std::find(all.begin(), all.end(), size) == all.end()) all.push_back(size);
+  return all;
 }
 
 Suite load_suite(const fs::path& file) { return parse_suite(read_whole(file), file); }

@@ -85,6 +85,7 @@ int run(int argc, const char* const* argv) {
   add_check(app, status);
   add_list(app, status);
   add_scene(app, status);
+  add_edt(app, status);
   const int parsed = parse(app, argc, argv);
   return parsed == exit_done ? status : parsed;
 }

@@ -39,6 +39,7 @@ void add_check(CLI::App& app, int& status);
 void add_list(CLI::App& app, int& status);
 void add_explain(CLI::App& app, int& status);
 void add_scene(CLI::App& app, int& status);
+void add_edt(CLI::App& app, int& status);
 
 // ---- what several commands share ----
 

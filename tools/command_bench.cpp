@@ -75,7 +75,7 @@ int bench_command(const Options& options) {
   const auto device = open_device(options.device);
   bench.device = device_info(*device);
   fmt::print(stderr, "{}: {} scenes, {} sizes, {} techniques on {}\n", suite.name, suite.scenes.size(),
-             suite.sizes.size(), suite.configs.size(), bench.device.name);
+             all_sizes(suite).size(), suite.configs.size(), bench.device.name);
   Progress progress("bench " + suite.name, 10);
   double share = 0;
   bench.progress = [&](double now, const std::string& note) { progress.update(share = now, note); };

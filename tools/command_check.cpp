@@ -46,7 +46,7 @@ std::string check_suite(const fs::path& file) {
   const Suite suite = load_suite(file);
   for (const std::string& notice : suite.notices) warn(notice);
   return fmt::format("suite, {}, {}, {}", count(suite.scenes.size(), "scene"),
-                     count(suite.sizes.size(), "size"), count(suite.configs.size(), "configuration"));
+                     count(all_sizes(suite).size(), "size"), count(suite.configs.size(), "configuration"));
 }
 
 // Says what the file is by its content; throws Error with every problem.

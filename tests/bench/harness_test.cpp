@@ -112,6 +112,7 @@ class HarnessTest : public testing::Test {
     config.graph.name = name;
     config.entry = suite_.configs.size();
     config.baseline = baseline;
+    config.sizes = suite_.sizes;
     suite_.configs.push_back(config);
   }
 

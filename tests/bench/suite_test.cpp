@@ -48,6 +48,20 @@ class SuiteTest : public testing::Test {
   fs::path folder_;
 };
 
+TEST_F(SuiteTest, GraphsMayHaveSizesOfTheirOwn) {
+  const Suite suite = parse(R"({ "schema": 1, "scenes": ["a.glb"], "size": [64, 36],
+    "graphs": ["shadow_mapping", { "name": "rbsm_conservative", "size": [[32, 18], [64, 36]] }] })");
+  const Extent small{32, 18}, usual{64, 36};
+  EXPECT_EQ(suite.configs[0].sizes, std::vector<Extent>{usual});
+  EXPECT_EQ(suite.configs[1].sizes, (std::vector<Extent>{small, usual}));
+  EXPECT_EQ(all_sizes(suite), (std::vector<Extent>{usual, small}));
+  EXPECT_NE(
+      problems(
+          R"({ "schema": 1, "scenes": ["a.glb"], "graphs": [{ "name": "shadow_mapping", "size": [0, 1] }] })")
+          .find("/graphs/0/size"),
+      std::string::npos);
+}
+
 TEST_F(SuiteTest, DesignsExample) {
   const Suite suite =
       parse(R"({ "schema": 1, "scenes": ["a.glb"], "size": [1280, 720], "baseline": "shadow_mapping",
