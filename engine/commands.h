@@ -18,4 +18,8 @@ void change_layout(VkCommandBuffer commands, const GpuImage& image, VkImageLayou
 void clear_image(VkCommandBuffer commands, const GpuImage& image, const std::array<float, 4>& value,
                  VkImageLayout then);
 
+// Levels 1 and up of all layers, each the level before it at half the size (Environment::check_mips). The
+// image is in the general layout before and after, and its usage includes both transfers.
+void generate_mips(VkCommandBuffer commands, const GpuImage& image);
+
 }  // namespace gnomon

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/commands.h"
+#include "engine/compile_parts.h"
 #include "engine/error.h"
 #include "engine/preamble.h"
 
@@ -58,6 +59,8 @@ ImageShape Environment::shape(const std::string& port) const {
   return physical_of(node_, resources_, port).image.shape();
 }
 
+bool Environment::connected(const std::string& port) const { return node_.resources.contains(port); }
+
 Defines Environment::with_parameters(Defines defines) const {
   for (auto& d : parameter_defines(node_.params)) defines.push_back(std::move(d));
   return defines;
@@ -102,6 +105,18 @@ void Environment::attach(const std::string& port, const Buffer& buffer) const {
   fail(fmt::format("pass '{}' has no buffer port '{}' that shaders see", node_.id, port));
 }
 
+void Environment::check_mips(const std::string& port) const {
+  const VkFormat format = shape(port).format;
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(device_->physical(), format, &properties);
+  constexpr VkFormatFeatureFlags kNeeded = VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT |
+                                           VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  if ((properties.optimalTilingFeatures & kNeeded) == kNeeded) return;
+  fail(fmt::format("pass '{}' needs mip levels of '{}', and this device cannot filter {}", node_.id, port,
+                   format_name(format)),
+       {}, {}, "do without mip levels, or use another number format");
+}
+
 Context::Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node,
                  const NodeState& state, const std::vector<Physical>& resources,
                  const std::vector<Physical>& previous, uint32_t iteration)
@@ -144,6 +159,39 @@ void Context::dispatch_indirect(const Pipeline& pipeline, const std::string& por
 
 void Context::fill(const std::string& buffer_port, uint32_t value, uint64_t offset, uint64_t size) {
   vkCmdFillBuffer(commands_, physical(buffer_port).buffer.handle(), offset, size, value);
+}
+
+void Context::clear(const std::string& image_port, uint32_t value) {
+  const GpuImage& image = physical(image_port).image;
+  VkClearColorValue color;
+  std::fill(std::begin(color.uint32), std::end(color.uint32), value);
+  const VkImageSubresourceRange all{image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  vkCmdClearColorImage(commands_, image.handle(), layout_of(node_, image_port, image.shape().format), &color, 1,
+                       &all);
+}
+
+void Context::copy(const Buffer& from, const std::string& image_port) {
+  const ImageShape shape = physical(image_port).image.shape();
+  copy_region(from, image_port, {0, 0, shape.extent.height}, shape.layers);
+}
+
+void Context::copy_rows(const Buffer& from, const std::string& image_port, const Rows& rows) {
+  copy_region(from, image_port, rows, 1);
+}
+
+void Context::copy_region(const Buffer& from, const std::string& image_port, const Rows& rows,
+                          uint32_t layers) {
+  const GpuImage& image = physical(image_port).image;
+  VkBufferImageCopy region{};
+  region.imageSubresource = {image.aspect(), 0, rows.layer, layers};
+  region.imageOffset.y = int32_t(rows.first);
+  region.imageExtent = {image.shape().extent.width, rows.count, 1};
+  vkCmdCopyBufferToImage(commands_, from.handle(), image.handle(),
+                         layout_of(node_, image_port, image.shape().format), 1, &region);
+}
+
+void Context::generate_mips(const std::string& port) {
+  gnomon::generate_mips(commands_, physical(port).image);
 }
 
 void Context::own_barrier() { full_barrier(commands_); }

@@ -26,9 +26,11 @@ class Environment {
   const Scene& scene() const { return scene_.scene(); }
   const GpuScene& gpu_scene() const { return scene_; }
   const RenderSettings& settings() const { return settings_; }
+  const std::string& id() const { return node_.id; }
   const Params& params() const { return node_.params; }
   const Device& device() const { return *device_; }
   ImageShape shape(const std::string& port) const;
+  bool connected(const std::string& port) const;  // of an optional input
 
   // Pipelines of this pass: its bindings, its parameter block and flags are in the preamble of every shader.
   Pipeline compute(const std::string& file, Defines defines = {}) const;
@@ -40,6 +42,8 @@ class Environment {
   // Shaders see `buffer`, which must outlive the pass' use, instead of the buffer port's own memory. Barriers
   // are the pass' business.
   void attach(const std::string& port, const Buffer& buffer) const;
+  // Error: this device cannot halve the port's format (Context::generate_mips).
+  void check_mips(const std::string& port) const;
 
   void fact(const std::string& name, double value) { facts_[node_.id + "." + name] = value; }  // for run.json
   void warn(std::string sentence) { warnings_.push_back(node_.id + ": " + std::move(sentence)); }
@@ -109,6 +113,16 @@ class Context {
   void dispatch_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset = 0);
   void fill(const std::string& buffer_port, uint32_t value, uint64_t offset = 0,
             uint64_t size = VK_WHOLE_SIZE);
+  // All texels of an image of 32-bit integers or floats (its bits) that the pass declares transfer_write.
+  void clear(const std::string& image_port, uint32_t value);
+  // Tightly packed texels to such an image's mip 0: all of it, or rows of a layer.
+  void copy(const Buffer& from, const std::string& image_port);
+  struct Rows {
+    uint32_t layer, first, count;
+  };
+  void copy_rows(const Buffer& from, const std::string& image_port, const Rows& rows);
+  // Fills an output's mip levels from its first; its access includes storage_write and both transfers.
+  void generate_mips(const std::string& port);
   // Makes everything this pass wrote so far visible to its next command.
   void own_barrier();
 
@@ -123,6 +137,7 @@ class Context {
  private:
   const Physical& physical(const std::string& port) const;
   void set_area(Extent extent);
+  void copy_region(const Buffer& from, const std::string& image_port, const Rows& rows, uint32_t layers);
   VkCommandBuffer commands_;
   const GpuScene& scene_;
   const PlanNode& node_;

@@ -74,12 +74,12 @@ std::vector<std::string> channel_names(uint32_t layers, uint32_t count) {
   return names;
 }
 
-}  // namespace
+// The depth aspect alone is copied: 4 bytes a texel.
+uint32_t texel_bytes_copied(VkFormat format) { return is_depth(format) ? 4 : texel_bytes(format); }
 
-Image read_back(const std::shared_ptr<Device>& device, const GpuImage& image, Extent shown) {
+// Mip 0 of all layers, tightly packed, in host memory.
+Buffer stage(const std::shared_ptr<Device>& device, const GpuImage& image, uint32_t bytes) {
   const ImageShape& shape = image.shape();
-  // The depth aspect alone is copied: 4 bytes a texel.
-  const uint32_t bytes = is_depth(shape.format) ? 4 : texel_bytes(shape.format);
   const Extent size = shape.extent;
   Buffer staging(device, uint64_t(size.width) * size.height * shape.layers * bytes,
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT, Place::host);
@@ -100,7 +100,16 @@ Image read_back(const std::shared_ptr<Device>& device, const GpuImage& image, Ex
   info.pMemoryBarriers = &to_host;
   vkCmdPipelineBarrier2(once.commands(), &info);
   once.submit_and_wait();
+  return staging;
+}
 
+}  // namespace
+
+Image read_back(const std::shared_ptr<Device>& device, const GpuImage& image, Extent shown) {
+  const ImageShape& shape = image.shape();
+  const Extent size = shape.extent;
+  const uint32_t bytes = texel_bytes_copied(shape.format);
+  const Buffer staging = stage(device, image, bytes);
   const uint32_t count = components(shape.format);
   Image result(shown.width, shown.height, channel_names(shape.layers, count));
   for (uint32_t layer = 0; layer < shape.layers; ++layer)
@@ -113,6 +122,16 @@ Image read_back(const std::shared_ptr<Device>& device, const GpuImage& image, Ex
               component(shape.format, staging.bytes().data() + texel * bytes, c);
       }
   return result;
+}
+
+std::vector<uint32_t> read_back_words(const std::shared_ptr<Device>& device, const GpuImage& image) {
+  const ImageShape& shape = image.shape();
+  if (components(shape.format) != 1 || texel_bytes_copied(shape.format) != 4)
+    fail(fmt::format("an image of {} has no 32-bit words", format_name(shape.format)));
+  const Buffer staging = stage(device, image, 4);
+  std::vector<uint32_t> words(size_t(shape.extent.width) * shape.extent.height * shape.layers);
+  std::memcpy(words.data(), staging.bytes().data(), words.size() * 4);
+  return words;
 }
 
 }  // namespace gnomon

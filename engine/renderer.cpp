@@ -39,6 +39,7 @@ struct Renderer::Impl {
   void execute(const Segment& segment);
   void run_loop(const LoopPlan& loop, TimingMode mode, FrameTiming& timing);
   HostView host_view(const PlanNode& node, uint32_t iteration) const;
+  uint32_t readable(const std::string& output) const;  // index of its resource
 
   std::shared_ptr<Device> device;
   std::shared_ptr<const Scene> scene;
@@ -216,18 +217,27 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 
 FrameTiming Renderer::render(TimingMode mode) { return impl_->render(mode); }
 
-Image Renderer::read(const std::string& output) {
-  const Plan& plan = impl_->plan;
+uint32_t Renderer::Impl::readable(const std::string& output) const {
   auto found = plan.outputs.find(output);
   if (found == plan.outputs.end()) {
     found = plan.captures.find(output);
     if (found == plan.captures.end()) fail(fmt::format("no output or captured port '{}'", output));
   }
-  const Resource& resource = plan.resources[found->second];
-  if (resource.is_buffer) fail(fmt::format("'{}' is a buffer: only images can be captured", output));
+  if (plan.resources[found->second].is_buffer)
+    fail(fmt::format("'{}' is a buffer: only images can be captured", output));
+  return found->second;
+}
+
+Image Renderer::read(const std::string& output) {
+  const uint32_t index = impl_->readable(output);
+  const Resource& resource = impl_->plan.resources[index];
   const Extent shown =
       resource.constant ? Extent{impl_->settings.width, impl_->settings.height} : resource.image.extent;
-  return read_back(impl_->device, impl_->on_device->resources()[found->second].image, shown);
+  return read_back(impl_->device, impl_->on_device->resources()[index].image, shown);
+}
+
+std::vector<uint32_t> Renderer::read_words(const std::string& output) {
+  return read_back_words(impl_->device, impl_->on_device->resources()[impl_->readable(output)].image);
 }
 
 MemoryUse Renderer::memory() const {

@@ -23,6 +23,8 @@ struct RenderSettings {
   bool alias = true;                    // transient memory aliasing
   bool keep_all = false;                // leave nothing out
   std::vector<std::string> captures;    // "node.port" besides the outputs
+  // What passes of type image_source show, by their id: the first channel, of the viewport's size.
+  std::map<std::string, std::shared_ptr<const Image>> images;
 };
 
 enum class TimingMode {
@@ -65,6 +67,8 @@ class Renderer {
   // component and layer: "Y" for layer 0 of a one-channel image, "light1.Y", ...; RGB(A) as
   // "R","G","B"(,"A").
   Image read(const std::string& output);
+  // The same of one-component 32-bit images, bit for bit: layer after layer, row 0 at the top.
+  std::vector<uint32_t> read_words(const std::string& output);
 
   MemoryUse memory() const;
   std::vector<LeftOutPass> left_out() const;

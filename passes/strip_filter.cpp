@@ -87,7 +87,7 @@ void StripFilter::record(Context& c) {
     dispatch(pipeline);
   };
   clear_lists(c);
-  run(classify_, [&](const Pipeline& p) { c.dispatch(p, strips.cells_x, strips.cells_y, strips.layers); });
+  run(classify_, [&](const Pipeline& p) { c.dispatch_over(p, {strips.cells_x, strips.cells_y}, strips.layers); });
   run(list_y_,
       [&](const Pipeline& p) { c.dispatch(p, divide_up(strips.along_y, kListGroup), 1, strips.layers); });
   run(list_x_,

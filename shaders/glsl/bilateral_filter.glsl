@@ -14,7 +14,7 @@ void load_part(ivec2 origin, int light, int reach, int places) {
     Receiving here = receiving_at(pixel, light);
     values[place * LINES + line()] = source_at(pixel, light);
     positions[place * LINES + line()] = here.position;
-    if (here.receives) atomicOr(receives[line() * EDGE_WORDS + place / 32], 1u << uint(place % 32));
+    if (here.receives) atomicOr(receives[line() * EDGE_WORDS + place / BITS], 1u << uint(place % BITS));
   }
 }
 
@@ -24,7 +24,7 @@ float bilateral(int place, Receiving centre) {
   float sum = 0.0, weights = 0.0;
   for (int i = -int(ceil(width)); i <= int(ceil(width)); ++i) {
     int tap = place + i;
-    bool counts = i == 0 || (receives[line() * EDGE_WORDS + tap / 32] >> uint(tap % 32) & 1u) != 0u;
+    bool counts = i == 0 || (receives[line() * EDGE_WORDS + tap / BITS] >> uint(tap % BITS) & 1u) != 0u;
     float off = dot(centre.normal, positions[tap * LINES + line()] - centre.position) / range;
     float along = float(i) / sigma, inside = clamp(width + 1.0 - abs(float(i)), 0.0, 1.0);
     float weight = i == 0 ? 1.0 : counts ? inside * exp(-0.5 * (along * along + off * off)) : 0.0;

@@ -81,8 +81,7 @@ vec3 to_light(Light light, vec3 p, out float distance) {
 
 // Does a surface with unit geometric normal `n` at `p` face the light? Where not, it is in shadow whatever lies between.
 bool faces_light(Light light, vec3 p, vec3 n) {
-  float unused;
-  return dot(n, to_light(light, p, unused)) > 0.0;
+  return dot(n, light.position.w == LIGHT_DIRECTIONAL ? -light.direction.xyz : light.position.xyz - p) > 0.0;
 }
 
 // The face of the shadow map that sees `p`: of a point light, the one of its major axis (+x -x +y -y +z -z).

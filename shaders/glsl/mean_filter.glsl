@@ -8,13 +8,13 @@ const float UNIT = 16777216.0;
 shared uint sums[SPAN * LINES];    // of a part of a line, up to and including each place
 shared uint totals[PARTS * LINES]; // of the whole parts
 
-int places_of_part(int places) { return (places + PARTS - 1) / PARTS; }
+const int PART = SPAN / PARTS;  // places of a part: a power of two
 
 void sum_part(ivec2 origin, int light, int reach, int places) {
-  int count = places_of_part(places), first = part() * count;
+  int first = part() * PART;
   Receiving before = receiving_at(pixel_of(origin, reach, first - 1), light);
   uint sum = 0u;
-  for (int place = first; place < min(first + count, places); ++place) {
+  for (int place = first; place < min(first + PART, places); ++place) {
     ivec2 pixel = pixel_of(origin, reach, place);
     Receiving here = receiving_at(pixel, light);
     if (edge_between(before, here)) set_edge(place);
@@ -36,18 +36,15 @@ void add_up_totals() {
 }
 
 // Of all places of the line up to and including `place`, which may be -1.
-uint sum_to(int place, int count) {
-  if (place < 0) return 0u;
-  return sums[place * LINES + line()] + totals[place / count * LINES + line()];
-}
+uint sum_to(int place) { return place < 0 ? 0u : sums[place * LINES + line()] + totals[place / PART * LINES + line()]; }
 
-float mean(int place, float half_width, int count) {
+float mean(int place, float half_width) {
   int whole = int(half_width);
   float part = half_width - float(whole);
-  int begin = window_begin(place, place - whole - 1), end = window_end(place, place + whole + 1);
+  int begin = window_begin(place, whole + 1), end = window_end(place, whole + 1);
   int inner_begin = max(begin, place - whole), inner_end = min(end, place + whole);
-  float sum = float(sum_to(inner_end, count) - sum_to(inner_begin - 1, count));
-  float outer = float(sum_to(end, count) - sum_to(begin - 1, count)) - sum;
+  float sum = float(sum_to(inner_end) - sum_to(inner_begin - 1));
+  float outer = float(sum_to(end) - sum_to(begin - 1)) - sum;
   float weight = float(inner_end - inner_begin + 1) + part * float(end - begin - (inner_end - inner_begin));
   return clamp((sum + part * outer) / (UNIT * weight), 0.0, 1.0);
 }
@@ -56,7 +53,7 @@ void main() {
   ivec2 origin;
   int light;
   bool listed = strip_at(origin, light);
-  int reach = int(control[REACH]), places = listed ? LENGTH + 2 * reach + 2 : 0, count = places_of_part(places);
+  int reach = int(control[REACH]), places = listed ? LENGTH + 2 * reach + 2 : 0;
   clear_edges();
   barrier();
   sum_part(origin, light, reach, places);
@@ -66,6 +63,6 @@ void main() {
   int first = reach + 1 + part() * CELL;
   for (int place = first; place < first + (listed ? CELL : 0); ++place) {
     ivec2 pixel = pixel_of(origin, reach, place);
-    store(pixel, light, mean(place, half_width(receiving_at(pixel, light).depth), count));
+    store(pixel, light, mean(place, half_width(receiving_at(pixel, light).depth)));
   }
 }

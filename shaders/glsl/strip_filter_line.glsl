@@ -6,9 +6,11 @@ layout(local_size_x = 8, local_size_y = 8) in;  // x: line of the strip; y: part
 
 const int LINES = 8, PARTS = 8;
 const int SPAN = LENGTH + 2 * MAX_HALF + 2;   // places of a line at most; one spare at each end
-const int EDGE_WORDS = (SPAN + 31) / 32;
+const int BITS = 32;                          // of a word
+const int EDGE_WORDS = SPAN / BITS + 2;       // with one spare at each end
 
-shared uint edges[LINES * EDGE_WORDS];  // bit p of a line: there is an edge between its places p - 1 and p
+// Bit p of a line, after its first word: there is an edge between its places p - 1 and p.
+shared uint edges[LINES * EDGE_WORDS];
 
 #ifdef ALONG_Y_AXIS
 const ivec2 ALONG = ivec2(0, 1);
@@ -59,25 +61,23 @@ void store(ivec2 pixel, int light, float v) {
 void clear_edges() {
   for (int i = int(gl_LocalInvocationIndex); i < LINES * EDGE_WORDS; i += LINES * PARTS) edges[i] = 0u;
 }
-void set_edge(int place) { atomicOr(edges[line() * EDGE_WORDS + place / 32], 1u << uint(place % 32)); }
+void set_edge(int place) { atomicOr(edges[line() * EDGE_WORDS + place / BITS + 1], 1u << uint(place % BITS)); }
 
-// The place of the last edge at or before `place`, or `limit` where that is nearer.
-int window_begin(int place, int limit) {
-  int begin = limit;
-  for (int word = max(limit, 0) / 32; word <= place / 32; ++word) {
-    uint bits = edges[line() * EDGE_WORDS + word];
-    if (word == place / 32) bits &= 0xFFFFFFFFu >> uint(31 - place % 32);
-    if (bits != 0u) begin = max(begin, word * 32 + findMSB(bits));
-  }
-  return begin;
+// The 32 bits of the line that end with that of `place`, which becomes bit 31.
+uint edges_up_to(int place) {
+  int word = line() * EDGE_WORDS + place / BITS + 1;
+  uint shift = uint(place % BITS);
+  return edges[word] << (31u - shift) | (edges[word - 1] >> shift) >> 1;
 }
-// The last place before the next edge after `place`, or `limit` where that is nearer.
+
+// Where the window of a pixel at `place` begins that reaches `limit` places, at most 32, before it: at the last edge there.
+int window_begin(int place, int limit) {
+  int back = 31 - findMSB(edges_up_to(place));  // 32: no edge
+  return place - min(back, limit);
+}
+// Where the window ends that reaches `limit` places, at most 32, behind it: before the next edge.
 int window_end(int place, int limit) {
-  int end = limit;
-  for (int word = min(limit + 1, SPAN - 1) / 32; word >= (place + 1) / 32; --word) {
-    uint bits = edges[line() * EDGE_WORDS + word];
-    if (word == (place + 1) / 32) bits &= 0xFFFFFFFFu << uint((place + 1) % 32);
-    if (bits != 0u) end = min(end, word * 32 + findLSB(bits) - 1);
-  }
-  return end;
+  uint next = edges_up_to(place + BITS);
+  int ahead = next != 0u ? findLSB(next) : BITS;
+  return place + min(ahead, limit);
 }

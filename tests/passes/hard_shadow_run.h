@@ -25,6 +25,25 @@ struct Frame {
 
 inline std::shared_ptr<Device> device() { return test::kernel_device(); }
 
+// One frame's `visibility`: [light][pixel], row 0 at the top. The layers must be silent.
+inline std::vector<std::vector<float>> visibility(const Graph& graph, const Scene& scene,
+                                                  const RenderSettings& s) {
+  const size_t messages = validation_messages(*device()).size();
+  Renderer renderer(device(), std::make_shared<Scene>(scene), graph, s);
+  renderer.render(TimingMode::none);
+  const Image image = renderer.read("visibility");
+  const auto& all = validation_messages(*device());
+  for (size_t i = messages; i < all.size(); ++i) ADD_FAILURE() << all[i];
+  std::vector<std::vector<float>> planes;
+  for (size_t l = 0; l < scene.lights.size(); ++l)
+    planes.emplace_back(image.plane(l).begin(), image.plane(l).end());
+  return planes;
+}
+inline std::vector<std::vector<float>> visibility(const std::string& graph, const Scene& scene,
+                                                  const RenderSettings& s, const Values& set = {}) {
+  return visibility(load_graph(find_graph(graph), set), scene, s);
+}
+
 inline RenderSettings settings(bool reversed_z, uint32_t width = 160, uint32_t height = 120) {
   RenderSettings s;
   s.width = width, s.height = height;
