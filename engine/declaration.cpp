@@ -216,6 +216,17 @@ BufferShape Declaration::input_buffer(std::string name, Access access, std::stri
   return ports_.back().buffer;
 }
 
+std::optional<BufferShape> Declaration::optional_input_buffer(std::string name, Access access,
+                                                              std::string help) {
+  const Connected* connected = lookup(inputs_, name);
+  const bool present = connected && connected->buffer;
+  input_buffer(std::move(name), access, std::move(help));
+  Port& port = ports_.back();
+  port.optional = true;
+  if (!present) port.buffer.count = 0;
+  return present ? std::optional(port.buffer) : std::nullopt;
+}
+
 BufferShape Declaration::inout_buffer(std::string name, Access access, std::string help) {
   BufferShape shape = input_buffer(std::move(name), access, std::move(help));
   ports_.back().direction = Direction::inout;

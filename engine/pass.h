@@ -148,6 +148,7 @@ class Declaration {
 
   // Buffer ports.
   BufferShape input_buffer(std::string name, Access access, std::string help);
+  std::optional<BufferShape> optional_input_buffer(std::string name, Access access, std::string help);
   BufferShape inout_buffer(std::string name, Access access, std::string help);
   void output_buffer(std::string name, Access access, BufferShape shape, std::string help);
   void transient_buffer(std::string name, Access access, BufferShape shape, std::string help);

@@ -96,7 +96,8 @@ std::vector<ShaderPort> shader_ports(const Declaration& declaration) {
   std::vector<ShaderPort> shown;
   for (const Port& port : declaration.ports()) {
     constexpr Access kShown = Access::sampled | Access::storage_read | Access::storage_write;
-    const bool connected = !port.optional || port.is_buffer || port.image.format != VK_FORMAT_UNDEFINED;
+    const bool connected =
+        !port.optional || (port.is_buffer ? port.buffer.count > 0 : port.image.format != VK_FORMAT_UNDEFINED);
     if (has(port.access, kShown) && connected) shown.push_back({&port, uint32_t(shown.size())});
   }
   return shown;

@@ -19,7 +19,7 @@ class DistancePenumbra : public Pass {
     d.input("depth", Access::sampled, false, "the camera's device depth");
     d.input("geometric", Access::sampled, false, "octahedral geometric normal");
     d.choice("metric", "world", {"world", "screen"}, "distances in the world or in the image");
-    declare_penumbra_width(d);
+    declare_penumbra_width(d, 0.014);
     d.number("pixels", 15, 1, 16384, "pixels", "width of the penumbra in the screen metric");
     d.number(
         "depth_tolerance", 1e-3, 0, 1, "of the view depth",

@@ -6,6 +6,7 @@
 #include "engine/context.h"
 #include "engine/error.h"
 #include "engine/pass.h"
+#include "passes/penumbra_width.h"
 
 namespace gnomon {
 namespace {
@@ -59,17 +60,18 @@ class DistanceTransform : public Pass {
         d.choice("sites", "nonzero", {"nonzero", "silhouette"},
                  "pixels that are not 0, or that differ from one of their eight neighbours (with depth and "
                  "geometric: one on the same surface)");
-    d.integer("radius", 32, 1, kMostSide, "pixels", "of bounded_exact");
-    const double reach = d.number(
-        "reach", 0, 0, 1e9, "world units",
-        "of bounded_exact: the radius is what this spans around the sites; 0: use radius. Needs depth");
+    d.integer(
+        "radius", 32, 1, kMostSide, "pixels",
+        "of bounded_exact; with a penumbra, it is at least what half of that spans at the nearest site");
+    // The penumbra that is to be made of the distances: bounded_exact's radius is then what half of it spans.
+    const bool reach = declare_penumbra_width(d, 0);
     d.number("depth_tolerance", 2.5e-4, 0, 1, "of the view depth",
              "distance from a pixel's tangent plane at which a neighbour is on the same surface");
     declare_images(d, source, algorithm);
     declare_lists(d, source, algorithm);
-    if ((depth && geometric && sites == "silhouette") || (depth && reach > 0 && bounded(algorithm)))
+    if ((depth && geometric && sites == "silhouette") || (depth && reach && bounded(algorithm)))
       declare_listed(d, source);
-    if (bounded(algorithm) && depth && reach > 0)
+    if (bounded(algorithm) && depth && reach)
       d.transient_buffer("reached", kBoth | Access::transfer_write, {1, 4, "uint"},
                          "the frame's radius, pixels");
   }
@@ -183,9 +185,10 @@ class DistanceTransform : public Pass {
     const Params& p = e.params();
     const bool depth = e.connected("depth"), geometric = e.connected("geometric");
     depth_aware_ = depth && geometric && p.choice("sites") == "silhouette";
-    reaching_ = bounded(p.choice("algorithm")) && p.number("reach") > 0;
+    reach_ = float(0.5 * penumbra_width(e.scene(), p));
+    reaching_ = bounded(p.choice("algorithm")) && reach_ > 0;
     if (reaching_ && !depth)
-      fail(fmt::format("pass '{}' has a reach in world units but no depth", e.id()), {}, "reach",
+      fail(fmt::format("pass '{}' has a penumbra in world units but no depth", e.id()), {}, "penumbra",
            "connect depth, or give the radius in pixels");
     listed_ = depth_aware_ || reaching_;
     if (std::max(shape.extent.width, shape.extent.height) > kMostSide || shape.layers > kMostLayers)
@@ -219,7 +222,7 @@ class DistanceTransform : public Pass {
     c.own_barrier();
     c.dispatch(found_arguments_, 1);
     c.own_barrier();
-    c.push(resolve_, layer);
+    c.push(resolve_, Resolve{layer, reach_});
     c.dispatch_indirect(resolve_, "found_arguments");
   }
 
@@ -293,7 +296,13 @@ class DistanceTransform : public Pass {
     c.dispatch(arguments_, 1);
   }
 
+  struct Resolve {  // push constants
+    uint32_t layer;
+    float reach;  // world units
+  };
+
   std::string algorithm_;
+  float reach_ = 0;
   std::vector<uint32_t> steps_;
   bool depth_aware_ = false, reaching_ = false, listed_ = false;
   Pipeline pack_, found_arguments_, resolve_, carry_, arguments_, all_tiles_;

@@ -2,9 +2,12 @@
 
 namespace gnomon {
 
-void declare_penumbra_width(Declaration& d) {
-  d.number("penumbra", 0.0, 0, 1e9, "world units", "width of the penumbra; 0: penumbra_relative counts");
-  d.number("penumbra_relative", 0.014, 0, 10, "of the scene's diagonal", "width of the penumbra");
+bool declare_penumbra_width(Declaration& d, double relative) {
+  const double world =
+      d.number("penumbra", 0.0, 0, 1e9, "world units", "width of the penumbra; 0: penumbra_relative counts");
+  return d.number("penumbra_relative", relative, 0, 10, "of the scene's diagonal", "width of the penumbra") >
+             0 ||
+         world > 0;
 }
 
 double penumbra_width(const Scene& scene, const Params& params) {

@@ -7,8 +7,8 @@
 namespace gnomon {
 
 // Parameters `penumbra` (world units) and `penumbra_relative` (of the scene's diagonal), which counts where
-// the first is 0.
-void declare_penumbra_width(Declaration& d);
+// the first is 0. `relative`: the latter's default. False: both are 0.
+bool declare_penumbra_width(Declaration& d, double relative);
 
 // World units.
 double penumbra_width(const Scene& scene, const Params& params);

@@ -8,6 +8,7 @@ namespace {
 
 // As in shaders/glsl/strip_filter.glsl.
 constexpr uint32_t kCell = 8, kStrip = 8, kListGroup = 64;  // pixels; cells; invocations
+constexpr uint32_t kPlain = 1;                              // state of a cell that is all lit
 constexpr uint64_t kWord = 4;                               // bytes
 constexpr uint64_t kAlongX = 0, kAlongY = 4, kReach = 8, kControlWords = 9;
 
@@ -54,10 +55,16 @@ void StripFilter::declare(Declaration& d) const {
            "view depth at which the window has its width; 0: the camera's distance to the scene's middle");
   d.number("depth_tolerance", 1e-3, 0, 1, "of the view depth",
            "distance from each other's tangent plane at which neighbouring pixels still are one surface");
+  d.optional_input_buffer(
+      "tiles", Access::storage_read,
+      "tiles of 16x16 pixels outside of which visibility is plain: without them, it is looked for");
+  d.optional_input_buffer("arguments", Access::storage_read | Access::indirect,
+                          "workgroups (x, y, z) and number of tiles");
   const Strips strips(shape);
   const uint64_t layers = shape.layers;
   d.transient("rows", kList, true, {shape.extent, shape.layers, 1, VK_FORMAT_R32_SFLOAT}, "filtered along x");
-  d.transient_buffer("cell_states", kList, {uint64_t(strips.cells_x) * strips.cells_y * layers, 4, "uint"},
+  d.transient_buffer("cell_states", kList | Access::transfer_write,
+                     {uint64_t(strips.cells_x) * strips.cells_y * layers, 4, "uint"},
                      "of each cell of 8x8 pixels: all in umbra, all lit, or mixed");
   d.transient_buffer("strip_flags", kList, {strips.along_y * layers, 4, "uint"},
                      "1: the strip along y is listed");
@@ -68,7 +75,8 @@ void StripFilter::declare(Declaration& d) const {
 }
 
 void StripFilter::prepare(Environment& e) {
-  classify_ = e.compute("strip_filter_classify.glsl");
+  tiled_ = e.connected("tiles") && e.connected("arguments");
+  classify_ = e.compute(tiled_ ? "strip_filter_tiles.glsl" : "strip_filter_classify.glsl");
   list_y_ = e.compute("strip_filter_list_y.glsl");
   list_x_ = e.compute("strip_filter_list_x.glsl");
   along_x_ = e.compute(shader_);
@@ -87,7 +95,13 @@ void StripFilter::record(Context& c) {
     dispatch(pipeline);
   };
   clear_lists(c);
-  run(classify_, [&](const Pipeline& p) { c.dispatch_over(p, {strips.cells_x, strips.cells_y}, strips.layers); });
+  if (tiled_) c.fill("cell_states", kPlain);
+  run(classify_, [&](const Pipeline& p) {
+    if (tiled_)
+      c.dispatch_indirect(p, "arguments");
+    else
+      c.dispatch_over(p, {strips.cells_x, strips.cells_y}, strips.layers);
+  });
   run(list_y_,
       [&](const Pipeline& p) { c.dispatch(p, divide_up(strips.along_y, kListGroup), 1, strips.layers); });
   run(list_x_,

@@ -2,7 +2,7 @@
 const int MOST_PIXELS = 23170;  // diagonal of 16384 x 16384
 int frame_radius() {
 #if REACHING
-  return min(int(reached[0]), MOST_PIXELS);
+  return clamp(int(reached[0]), params.radius, MOST_PIXELS);
 #else
   return params.radius;
 #endif

@@ -6,21 +6,25 @@
 
 layout(local_size_x = 64) in;
 
-layout(push_constant) uniform Push { int layer; } push;
+layout(push_constant) uniform Push { int layer; float reach; } push;  // reach: world units
 
 #if DEPTH_AWARE
 
-// The four pixels around a corner, in the order of textureGather: do they differ from `value` and lie on the surface through `p`?
+// The four pixels around a corner, in the order of textureGather: does one differ from `value`, lie on the surface through `p` and
+// face the light? What faces away is in shadow by itself; no silhouette runs along there.
 bool differs(ivec2 corner, float value, vec3 p, vec3 n, float z) {
   const ivec2 OFFSET[4] = ivec2[4](ivec2(-1, 0), ivec2(0, 0), ivec2(0, -1), ivec2(-1, -1));
   vec2 at = vec2(corner) / vec2(textureSize(depth, 0));
   vec4 values = textureGather(source, vec3(at, push.layer)), depths = textureGather(depth, at);
+  vec4 normals_x = textureGather(geometric, at, 0), normals_y = textureGather(geometric, at, 1);
   ivec2 last = textureSize(depth, 0) - 1;
   bool one = false;
   for (int i = 0; i < 4; ++i) {
     // Beyond the image its edge is repeated.
     vec3 q = relative_position(clamp(corner + OFFSET[i], ivec2(0), last), depths[i]);
-    one = one || (values[i] != value && !is_background(depths[i]) && same_surface(p, n, q, z, params.depth_tolerance));
+    bool receives = !is_background(depths[i]) &&
+                    faces_light(lights[push.layer], q, octahedral_decode(vec2(normals_x[i], normals_y[i])));
+    one = one || (values[i] != value && receives && same_surface(p, n, q, z, params.depth_tolerance));
   }
   return one;
 }
@@ -31,7 +35,7 @@ bool is_site(ivec2 pixel, float device_depth) {
   float z = view_depth(device_depth), value = source_at(pixel, push.layer).x;
   bool found_any = differs(pixel, value, p, n, z) || differs(pixel + ivec2(1, 0), value, p, n, z) ||
              differs(pixel + ivec2(0, 1), value, p, n, z) || differs(pixel + 1, value, p, n, z);
-  return found_any && !is_background(device_depth);
+  return found_any && !is_background(device_depth) && faces_light(lights[push.layer], p, n);
 }
 
 #endif
@@ -41,9 +45,9 @@ bool is_site(ivec2 pixel, float device_depth) {
 int pixels_of_reach(ivec2 pixel, float device_depth) {
   ivec2 size = textureSize(depth, 0);
   int most = size.x + size.y;
-  float z = view_depth(device_depth), room = z - params.reach;
+  float z = view_depth(device_depth), room = z - push.reach;
   float pixel_size = min(length(frame.ray_dx.xyz), length(frame.ray_dy.xyz));  // at view depth 1
-  float pixels = params.reach * length(relative_position(pixel, device_depth)) / (z * room * pixel_size);
+  float pixels = push.reach * length(relative_position(pixel, device_depth)) / (z * room * pixel_size);
   return room > 0.0 && pixels < float(most) ? int(ceil(pixels)) : most;
 }
 

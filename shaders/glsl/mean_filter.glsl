@@ -61,8 +61,15 @@ void main() {
   if (part() == 0) add_up_totals();
   barrier();
   int first = reach + 1 + part() * CELL;
-  for (int place = first; place < first + (listed ? CELL : 0); ++place) {
+  bool needed = listed && changes(origin + ALONG * part() * CELL, light);
+  for (int place = first; place < first + (needed ? CELL : 0); ++place) {
     ivec2 pixel = pixel_of(origin, reach, place);
     store(pixel, light, mean(place, half_width(receiving_at(pixel, light).depth)));
   }
+#ifndef ALONG_Y_AXIS
+  for (int place = first; place < first + (listed && !needed ? CELL : 0); ++place) {
+    ivec2 pixel = pixel_of(origin, reach, place);
+    store(pixel, light, source_at(pixel, light));
+  }
+#endif
 }

@@ -40,6 +40,22 @@ bool strip_at(out ivec2 origin, out int light) {
 // Places run from `reach + 1` before the strip to as many behind it.
 ivec2 pixel_of(ivec2 origin, int reach, int place) { return origin + ALONG * (place - reach - 1) + ALONG.yx * line(); }
 
+// Can the filter change anything in the cell that begins at `corner`? Not where all cells in its reach are alike.
+bool changes(ivec2 corner, int light) {
+  ivec2 cells = cells_of(image_size()), cell = corner / CELL;
+  int around = int(control[REACH]) / CELL + 1;
+#ifdef ALONG_Y_AXIS
+  ivec2 sides = ivec2(around);
+#else
+  ivec2 sides = ivec2(around, 0);
+#endif
+  ivec2 first = max(cell - sides, ivec2(0)), last = min(cell + sides, cells - 1);
+  uint seen = 0u;  // a bit for each state
+  for (int y = first.y; y <= last.y; ++y)
+    for (int x = first.x; x <= last.x; ++x) seen |= 1u << cell_states[(light * cells.y + y) * cells.x + x];
+  return seen != 1u << CELL_UMBRA && seen != 1u << CELL_LIT;
+}
+
 float source_at(ivec2 pixel, int light) {
   ivec3 at = ivec3(clamp(pixel, ivec2(0), image_size() - 1), light);
 #ifdef ALONG_Y_AXIS

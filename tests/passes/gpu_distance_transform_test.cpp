@@ -272,7 +272,7 @@ TEST_F(DistanceTransform, DepthTellsShadowEdgesFromDepthEdges) {
 
 TEST_F(DistanceTransform, ReachGivesARadiusThatCutsNothingWithinItOff) {
   const DepthRun exact = depth_run(R"("algorithm": "banded_exact")");
-  const DepthRun bounded = depth_run(R"("algorithm": "bounded_exact", "reach": 0.3)");
+  const DepthRun bounded = depth_run(R"("algorithm": "bounded_exact", "penumbra": 0.6)");
   uint64_t kept = 0, cut = 0;
   int64_t farthest = 0, nearest_cut = INT64_MAX;
   for (size_t i = 0; i < exact.nearest.size(); ++i) {
@@ -302,7 +302,7 @@ TEST_F(DistanceTransform, ReachGivesARadiusThatCutsNothingWithinItOff) {
 }
 
 TEST_F(DistanceTransform, ReachWithoutDepthIsAnError) {
-  EXPECT_THROW(marked_tiles(Image(8, 8, {"Y"}), R"({ "algorithm": "bounded_exact", "reach": 1.0 })"), Error);
+  EXPECT_THROW(marked_tiles(Image(8, 8, {"Y"}), R"({ "algorithm": "bounded_exact", "penumbra": 2.0 })"), Error);
 }
 
 // 8192 x 8192 takes minutes: GNOMON_SLOW_TESTS=1.
