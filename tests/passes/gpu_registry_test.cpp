@@ -305,6 +305,17 @@ std::string shape_text(const Declaration& d) {
   return text.str();
 }
 
+// The defaults, and each choice of each other parameter alone: what a parameter does may depend on one.
+std::vector<Values> circumstances(const std::string& type, const std::string& parameter) {
+  Declaration d;
+  PassRegistry::instance().make(type)->declare(d);
+  std::vector<Values> all{{}};
+  for (const ParamSpec& other : d.param_specs())
+    if (other.type == ParamType::choice && other.name != parameter)
+      for (const std::string& choice : other.choices) all.push_back({{other.name, choice}});
+  return all;
+}
+
 // Does declare() itself use the value: do ports or defaults depend on it?
 bool in_declaration(const std::string& type, const ParamSpec& spec) {
   const auto text = [&](const Values& given) {
@@ -312,11 +323,15 @@ bool in_declaration(const std::string& type, const ParamSpec& spec) {
     PassRegistry::instance().make(type)->declare(d);
     return shape_text(d);
   };
-  const std::string standard = text({});
   const auto others = other_values(spec);
-  return std::any_of(others.begin(), others.end(), [&](const Value& v) {
-    return text({{spec.name, v}}) != standard;
-  });
+  for (Values given : circumstances(type, spec.name)) {
+    const std::string standard = text(given);
+    for (const Value& v : others) {
+      given[spec.name] = v;
+      if (text(given) != standard) return true;
+    }
+  }
+  return false;
 }
 
 TEST(Registry, EveryParameterIsUsed) {
