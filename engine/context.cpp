@@ -166,8 +166,8 @@ void Context::clear(const std::string& image_port, uint32_t value) {
   VkClearColorValue color;
   std::fill(std::begin(color.uint32), std::end(color.uint32), value);
   const VkImageSubresourceRange all{image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
-  vkCmdClearColorImage(commands_, image.handle(), layout_of(node_, image_port, image.shape().format), &color, 1,
-                       &all);
+  vkCmdClearColorImage(commands_, image.handle(), layout_of(node_, image_port, image.shape().format), &color,
+                       1, &all);
 }
 
 void Context::copy(const Buffer& from, const std::string& image_port) {

@@ -302,7 +302,8 @@ TEST_F(DistanceTransform, ReachGivesARadiusThatCutsNothingWithinItOff) {
 }
 
 TEST_F(DistanceTransform, ReachWithoutDepthIsAnError) {
-  EXPECT_THROW(marked_tiles(Image(8, 8, {"Y"}), R"({ "algorithm": "bounded_exact", "penumbra": 2.0 })"), Error);
+  EXPECT_THROW(marked_tiles(Image(8, 8, {"Y"}), R"({ "algorithm": "bounded_exact", "penumbra": 2.0 })"),
+               Error);
 }
 
 // 8192 x 8192 takes minutes: GNOMON_SLOW_TESTS=1.
