@@ -6,6 +6,7 @@
 #include "engine/context.h"
 #include "engine/error.h"
 #include "engine/pass.h"
+#include "passes/divide_up.h"
 #include "passes/penumbra_width.h"
 
 namespace gnomon {
@@ -18,8 +19,6 @@ constexpr uint32_t kMostSide = 16384;       // pixels: squared distances fit 32 
 constexpr uint64_t kStripeBytes = 1 << 26;  // of banded_exact's rows: half of what every device binds
 constexpr uint32_t kBand = 4096;            // columns that an invocation of distance_transform_envelope takes
 constexpr uint32_t kFoundGroup = 64;        // workgroup of distance_transform_resolve
-
-uint32_t divide_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
 
 // Rows that banded_exact handles at once: whole words, as many as fit kStripeBytes.
 uint32_t stripe_words(Extent size) {
@@ -81,9 +80,9 @@ class DistanceTransform : public Pass {
     const Params& p = e.params();
     steps_ = flood_steps(p.choice("variant"), e.shape("nearest").extent);
     algorithm_ = p.choice("algorithm");
-    const Defines modes = modes_of(e);
+    const Defines mode_defines = modes();
     const auto compute = [&](const char* name, Defines more = {}) {
-      more.insert(more.end(), modes.begin(), modes.end());
+      more.insert(more.end(), mode_defines.begin(), mode_defines.end());
       return e.compute(fmt::format("distance_transform_{}.glsl", name), std::move(more));
     };
     pack_ = compute("pack");
@@ -204,7 +203,7 @@ class DistanceTransform : public Pass {
            fmt::format("this device's storage buffers have at most {} bytes: use a smaller image", most));
   }
 
-  Defines modes_of(Environment&) const {
+  Defines modes() const {
     const auto flag = [](bool on) { return on ? "1" : "0"; };
     return {{"LISTED", flag(listed_)}, {"DEPTH_AWARE", flag(depth_aware_)}, {"REACHING", flag(reaching_)}};
   }

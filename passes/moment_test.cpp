@@ -36,10 +36,7 @@ class MomentTest : public Pass {
     report_bias(e);
   }
 
-  void record(Context& c) override {
-    const ImageShape shape = c.shape("visibility");
-    for (uint32_t light = 0; light < shape.layers; ++light) test_.dispatch_over(c, light, shape.extent);
-  }
+  void record(Context& c) override { test_.dispatch_all(c); }
 
  private:
   static void declare_thresholds(Declaration& d) {

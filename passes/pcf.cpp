@@ -23,10 +23,7 @@ class PercentageCloserFilter : public Pass {
     filter_.prepare(e, "pcf.glsl");
     report_bias(e);
   }
-  void record(Context& c) override {
-    const ImageShape shape = c.shape("visibility");
-    for (uint32_t light = 0; light < shape.layers; ++light) filter_.dispatch_over(c, light, shape.extent);
-  }
+  void record(Context& c) override { filter_.dispatch_all(c); }
 
  private:
   PerLight filter_;

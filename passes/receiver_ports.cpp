@@ -81,6 +81,11 @@ void PerLight::dispatch_over(Context& c, uint32_t light, Extent pixels) const {
   c.dispatch_over(ready(c, light), pixels);
 }
 
+void PerLight::dispatch_all(Context& c) const {
+  const ImageShape shape = c.shape("visibility");
+  for (uint32_t light = 0; light < shape.layers; ++light) dispatch_over(c, light, shape.extent);
+}
+
 void PerLight::dispatch_indirect(Context& c, uint32_t light, const std::string& port,
                                  std::array<uint32_t, 2> part) const {
   c.dispatch_indirect(ready(c, light, part), port);

@@ -25,6 +25,8 @@ class PerLight {
  public:
   void prepare(Environment& e, const std::string& file, const Defines& defines = {});
   void dispatch_over(Context& c, uint32_t light, Extent pixels) const;
+  // One invocation per pixel of `visibility`, light by light.
+  void dispatch_all(Context& c) const;
   // `part`: for passes that do their work in several dispatches.
   void dispatch_indirect(Context& c, uint32_t light, const std::string& port,
                          std::array<uint32_t, 2> part = {}) const;

@@ -20,11 +20,7 @@ class Revectorize : public Pass {
     d.number("epsilon", 1e-3, 0, 1, "depth range",
              "kept_lowering: how near the map is lowered for, and by how much");
     d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
-    const uint64_t pixels = uint64_t(visibility.extent.width) * visibility.extent.height;
-    d.transient_buffer("silhouette", Access::storage_read | Access::storage_write, {pixels, 4, "uint"},
-                       "pixels on one light's silhouette, as y * width + x");
-    d.transient_buffer("arguments", kListArguments, {4, 4, "uint"},
-                       "workgroups of the walk (x, y, z) and the number of listed pixels");
+    declare_pixel_list(d, visibility.extent, "pixels on one light's silhouette");
   }
 
   void prepare(Environment& e) override {
@@ -37,7 +33,7 @@ class Revectorize : public Pass {
     const ImageShape shape = c.shape("visibility");
     for (uint32_t light = 0; light < shape.layers; ++light) {
       if (light > 0) c.own_barrier();  // the list is used again
-      clear_list(c, "arguments");
+      clear_pixel_list(c);
       c.own_barrier();
       find_.dispatch_over(c, light, shape.extent);
       c.own_barrier();

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/context.h"
+#include "passes/divide_up.h"
 #include "passes/pixel_list.h"
 #include "passes/receiver_ports.h"
 
@@ -20,11 +21,7 @@ class RevectorizationBasedFilter : public Pass {
            "only pixels whose kernel touches a silhouette are filtered; the result is the same");
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
-    const uint64_t pixels = uint64_t(visibility.extent.width) * visibility.extent.height;
-    d.transient_buffer("mixed", Access::storage_read | Access::storage_write, {pixels, 4, "uint"},
-                       "pixels whose kernel touches one light's silhouette, as y * width + x");
-    d.transient_buffer("arguments", kListArguments, {4, 4, "uint"},
-                       "workgroups of the filter (x, y, z) and the number of listed pixels");
+    declare_pixel_list(d, visibility.extent, "pixels whose kernel touches one light's silhouette");
   }
 
   void prepare(Environment& e) override {
@@ -37,7 +34,7 @@ class RevectorizationBasedFilter : public Pass {
     const ImageShape shape = c.shape("visibility");
     for (uint32_t light = 0; light < shape.layers; ++light) {
       if (light > 0) c.own_barrier();  // the list is used again
-      clear_list(c, "arguments");
+      clear_pixel_list(c);
       c.own_barrier();
       find_.dispatch_over(c, light, shape.extent);
       filter(c, light);
@@ -51,7 +48,7 @@ class RevectorizationBasedFilter : public Pass {
   // Block by block; without reuse row by row of each block.
   void filter(Context& c, uint32_t light) const {
     const auto kernel = uint32_t(c.params().integer("kernel"));
-    const uint32_t blocks = (kernel + kBlock - 1) / kBlock, size = (kernel + blocks - 1) / blocks;
+    const uint32_t blocks = divide_up(kernel, kBlock), size = divide_up(kernel, blocks);
     for (uint32_t y = 0; y < blocks; ++y)
       for (uint32_t x = 0; x < blocks; ++x) {
         const uint32_t rows = c.params().flag("reuse") ? 1 : std::min(kernel - y * size, size);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 
+#include "passes/divide_up.h"
+
 namespace gnomon {
 namespace {
 
@@ -13,8 +15,6 @@ constexpr uint64_t kWord = 4;                               // bytes
 constexpr uint64_t kAlongX = 0, kAlongY = 4, kReach = 8, kControlWords = 9;
 
 constexpr Access kList = Access::storage_read | Access::storage_write;
-
-constexpr uint32_t divide_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
 
 struct Strips {
   uint32_t cells_x, cells_y, along_x, along_y, layers;

@@ -1,10 +1,9 @@
 // RBSM, first half: the shadow test of every pixel (3.2), and the list of pixels that lie on the silhouette (3.3).
 // Only these are walked: the work follows the pixels that need it.
+#include "pixel_list.glsl"
 #include "shadow_query.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-const uint WALK_GROUP = 64u;  // workgroup size of revectorize_walk
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -20,9 +19,5 @@ void main() {
   imageStore(visibility, ivec3(at, push.light), vec4(inside ? float(lit) : unmapped_visibility(state)));
   // The conservative form works on the lit side only.
   bool wanted = MODE == MODE_CONSERVATIVE ? lit : true;
-  if (inside && !same && wanted) {
-    uint slot = atomicAdd(arguments[3], 1u);
-    if (slot % WALK_GROUP == 0u) atomicMax(arguments[0], slot / WALK_GROUP + 1u);
-    silhouette[slot] = at.y * size.x + at.x;
-  }
+  if (inside && !same && wanted) list_pixel(at, size.x);
 }

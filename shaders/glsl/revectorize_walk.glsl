@@ -1,4 +1,5 @@
 // RBSM, second half: the walks along the silhouette and the revectorized visibility, for the listed pixels.
+#include "pixel_list.glsl"
 #include "shadow_query.glsl"
 
 layout(local_size_x = 64) in;
@@ -24,11 +25,8 @@ bool rbsm_lit(ivec2 texel, inout float lowering) {
 #include "lib/revectorization.glsl"
 
 void main() {
-  uint slot = gl_GlobalInvocationID.x;
-  if (slot >= arguments[3]) return;
-  ivec2 size = imageSize(visibility).xy;
-  uint index = silhouette[slot];
-  ivec2 at = ivec2(index % size.x, index / size.x);
+  ivec2 at;
+  if (!listed_pixel(gl_GlobalInvocationID.x, imageSize(visibility).x, at)) return;
   make_query(at, query);
   ivec2 texel = ivec2(floor(query.position));
   vec2 c = fract(query.position);  // (3.1)

@@ -4,6 +4,7 @@
 // A dispatch does a part of the kernel, a block of samples or, without reuse, a row of a block, and hands the sum on: wide
 // kernels with long walks would keep a device longer in one dispatch than drivers allow (lavapipe ends loops after 65535 turns
 // in all). Samples are added in the same order either way.
+#include "pixel_list.glsl"
 #include "shadow_query.glsl"
 
 layout(local_size_x = 64) in;
@@ -116,11 +117,8 @@ float add_part(float sum, ivec2 first, ivec2 inside, vec2 c) {
 #endif
 
 void main() {
-  uint slot = gl_GlobalInvocationID.x;
-  if (slot >= arguments[3]) return;
-  ivec2 size = imageSize(visibility).xy;
-  uint index = mixed[slot];
-  ivec2 at = ivec2(index % size.x, index / size.x);
+  ivec2 at;
+  if (!listed_pixel(gl_GlobalInvocationID.x, imageSize(visibility).x, at)) return;
   make_query(at, query);
   ivec2 part = ivec2(push.part & 0xFFu) * block_size(), inside = min(ivec2(params.kernel) - part, ivec2(block_size()));
   ivec2 first = ivec2(floor(query.position)) - params.kernel / 2 + part;

@@ -1,10 +1,9 @@
 // RPCF, first half: pixels whose kernel and its neighbours are all lit or all in shadow have no silhouette to revectorize and
 // are done; the others are listed. Without LIST, as the naive algorithm has it, all are.
+#include "pixel_list.glsl"
 #include "shadow_query.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-const uint FILTER_GROUP = 64u;  // workgroup size of rpcf_filter
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -31,9 +30,5 @@ void main() {
   bool any_lit = any(greaterThan(most, vec4(0.5))), all_lit = all(greaterThan(least, vec4(0.5)));
   bool inside = state == PIXEL_INSIDE;
   imageStore(visibility, ivec3(at, push.light), vec4(inside ? float(any_lit) : unmapped_visibility(state)));
-  if (inside && any_lit != all_lit) {
-    uint slot = atomicAdd(arguments[3], 1u);
-    if (slot % FILTER_GROUP == 0u) atomicMax(arguments[0], slot / FILTER_GROUP + 1u);
-    mixed[slot] = at.y * size.x + at.x;
-  }
+  if (inside && any_lit != all_lit) list_pixel(at, size.x);
 }

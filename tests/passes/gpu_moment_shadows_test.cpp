@@ -17,21 +17,9 @@ using hard_shadow::device;
 
 RenderSettings small() { return hard_shadow::settings(true, 96, 72); }
 
-// [light][pixel]; the layers must be silent.
 std::vector<std::vector<float>> visibility(const std::string& graph, const Scene& scene, const Values& set,
                                            const RenderSettings& s = small()) {
-  const size_t messages = validation_messages(*device()).size();
-  Renderer renderer(device(), std::make_shared<Scene>(scene), load_graph(find_graph(graph), set), s);
-  renderer.render(TimingMode::none);
-  const Image image = renderer.read("visibility");
-  const auto& all = validation_messages(*device());
-  for (size_t i = messages; i < all.size(); ++i) ADD_FAILURE() << all[i];
-  std::vector<std::vector<float>> planes;
-  for (size_t l = 0; l < scene.lights.size(); ++l) {
-    const auto plane = image.plane(l);
-    planes.emplace_back(plane.begin(), plane.end());
-  }
-  return planes;
+  return hard_shadow::visibility(graph, scene, s, set);
 }
 
 void expect_in_range(const std::string& graph, const Scene& scene, const Values& set) {
