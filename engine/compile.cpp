@@ -113,6 +113,7 @@ class Compiler {
       resource.is_buffer = port.is_buffer;
       resource.image = port.image;
       resource.buffer = port.buffer;
+      resource.kept = port.kept;
       add_resource({index, port.name}, std::move(resource));
     }
   }

@@ -85,7 +85,7 @@ class Barriers {
 
   void set_initial_layout(uint32_t i) {
     Resource& resource = plan_.resources[i];
-    const bool kept = resource.constant || resource.history;
+    const bool kept = resource.constant || resource.history || resource.kept;
     if (kept && !resource.is_buffer && !uses_[i].current.empty())
       resource.initial_layout = uses_[i].current.back().use.layout;
   }
@@ -99,7 +99,14 @@ class Barriers {
     Barrier barrier{i, predecessors(i), epochs.front().use, true};
     if (const LoopRange* loop = loop_at(epochs.front().first)) merge(barrier.before, own_use_in(i, *loop));
     barrier.before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    if (resource.kept) barrier = first_use_of_kept(i);
     put(epochs.front().first, barrier);
+  }
+
+  // The frame before left its content in the layout of its last use.
+  Barrier first_use_of_kept(uint32_t i) const {
+    const std::vector<Epoch>& epochs = uses_[i].current;
+    return {i, scope_after(epochs.back()), epochs.front().use, false, loop_at(epochs.front().first) != nullptr};
   }
 
   // The contents stay from frame to frame; only a second layout needs barriers.
@@ -175,7 +182,8 @@ class Barriers {
       last = &epoch;
     }
     if (!first || (first == last && !first->write)) return;
-    const bool made_in_loop = first == &epochs.front() && !previous && !plan_.resources[i].constant;
+    const bool stays = plan_.resources[i].constant || plan_.resources[i].kept;
+    const bool made_in_loop = first == &epochs.front() && !previous && !stays;
     if (made_in_loop && first->first >= loop.first) return;  // discarded anew every turn
     plan_.loops[loop_index].repeat_barriers.push_back(
         {i, scope_after(*last), first->use, false, false, previous});

@@ -48,7 +48,8 @@ class Heap {
   }
 
   static bool in_heap_kind(const Resource& resource) {
-    return !resource.exported && !resource.history && !resource.host_visible && !resource.constant;
+    return !resource.exported && !resource.history && !resource.kept && !resource.host_visible &&
+           !resource.constant;
   }
 
  private:

@@ -65,6 +65,16 @@ std::vector<Wait> find_waits(std::vector<HostRead> reads) {
   return waits;
 }
 
+// Why the host waits at the end of a loop's turn: its controller reads what it wrote itself. Empty: it does not.
+std::string controller_reads(const Plan& plan, const LoopRange& loop) {
+  const PlanNode& controller = plan.nodes[loop.controller];
+  for (const Port& port : controller.declaration.ports())
+    if (port.direction == Direction::out && has(port.access, Access::host_read))
+      return "'" + controller.id + "' reads '" + plan.resources[controller.resources.at(port.name)].name +
+             "' on the host";
+  return {};
+}
+
 uint32_t segment_starting_at(const Plan& plan, uint32_t position) {
   const auto found = std::find_if(plan.segments.begin(), plan.segments.end(),
                                   [&](const Segment& segment) { return segment.first >= position; });
@@ -80,7 +90,7 @@ void cut_segments(Plan& plan, const std::vector<LoopRange>& loops) {
   ends[count];
   for (const LoopRange& loop : loops) {
     ends[loop.first];
-    ends[loop.last];
+    ends[loop.last] = controller_reads(plan, loop);
   }
   for (const Wait& wait : find_waits(host_reads(plan, loops))) {
     std::string& reason = ends[wait.writer + 1];

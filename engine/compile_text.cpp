@@ -181,6 +181,7 @@ class Writer {
     if (resource.constant)
       for (const float value : *resource.constant) text += " " + number(value);
     if (resource.history) text += ", history";
+    if (resource.kept) text += ", kept";
     if (resource.host_visible) text += ", host visible";
     if (resource.exported) text += ", exported";
     return text;

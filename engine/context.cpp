@@ -36,10 +36,11 @@ VkImageLayout layout_of(const PlanNode& node, const std::string& name, VkFormat 
   return use_of(port->access, node.declaration.kind(), false, format).layout;
 }
 
-VkImageView target_view(const GpuImage& image, const std::optional<uint32_t>& layer) {
-  if (!layer) return image.attachment_view();
-  return image.view(VK_IMAGE_VIEW_TYPE_2D, std::min(*layer, image.shape().layers - 1), 1, 0, 1,
-                    image.aspect());
+VkImageView target_view(const GpuImage& image, const Targets& targets) {
+  if (!targets.layer) return image.attachment_view();
+  const uint32_t first = std::min(*targets.layer, image.shape().layers - 1);
+  const VkImageViewType type = targets.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  return image.view(type, first, targets.layers, 0, 1, image.aspect());
 }
 
 }  // namespace
@@ -81,6 +82,10 @@ Buffer Environment::buffer(uint64_t bytes, VkBufferUsageFlags usage) const {
   return Buffer(device_, std::max<uint64_t>(bytes, 16), usage, Place::device);
 }
 
+Buffer Environment::host_buffer(uint64_t bytes, VkBufferUsageFlags usage) const {
+  return Buffer(device_, std::max<uint64_t>(bytes, 16), usage, Place::host);
+}
+
 Buffer Environment::upload(std::span<const std::byte> bytes, VkBufferUsageFlags usage) const {
   return upload_buffer(device_, bytes, usage);
 }
@@ -119,14 +124,16 @@ void Environment::check_mips(const std::string& port) const {
 
 Context::Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node,
                  const NodeState& state, const std::vector<Physical>& resources,
-                 const std::vector<Physical>& previous, uint32_t iteration)
+                 const std::vector<Physical>& previous, uint32_t iteration,
+                 std::function<void(std::string_view)> section)
     : commands_(commands),
       scene_(scene),
       node_(node),
       state_(state),
       resources_(resources),
       previous_(previous),
-      iteration_(iteration) {}
+      iteration_(iteration),
+      section_(std::move(section)) {}
 
 const Physical& Context::physical(const std::string& port) const {
   const auto back = node_.previous_inputs.find(port);
@@ -159,6 +166,10 @@ void Context::dispatch_indirect(const Pipeline& pipeline, const std::string& por
 
 void Context::fill(const std::string& buffer_port, uint32_t value, uint64_t offset, uint64_t size) {
   vkCmdFillBuffer(commands_, physical(buffer_port).buffer.handle(), offset, size, value);
+}
+
+void Context::update(const std::string& buffer_port, std::span<const std::byte> bytes, uint64_t offset) {
+  vkCmdUpdateBuffer(commands_, physical(buffer_port).buffer.handle(), offset, bytes.size(), bytes.data());
 }
 
 void Context::clear(const std::string& image_port, uint32_t value) {
@@ -198,16 +209,16 @@ void Context::own_barrier() { full_barrier(commands_); }
 
 void Context::render(const Targets& targets, const std::function<void()>& body) {
   std::vector<VkRenderingAttachmentInfo> colors;
-  Extent area;
+  Extent area = targets.area;
   uint32_t layers = 1;
   const auto note = [&](const GpuImage& image) {
     area = image.shape().extent;
-    layers = targets.layer ? 1 : image.shape().layers;
+    layers = targets.layer ? targets.layers : image.shape().layers;
   };
   for (const ColorTarget& target : targets.colors) {
     const GpuImage& image = physical(target.port).image;
     note(image);
-    auto info = attachment(target_view(image, targets.layer),
+    auto info = attachment(target_view(image, targets),
                            layout_of(node_, target.port, image.shape().format), target.clear.has_value());
     if (target.clear) std::copy(target.clear->begin(), target.clear->end(), info.clearValue.color.float32);
     colors.push_back(info);
@@ -218,7 +229,7 @@ void Context::render(const Targets& targets, const std::function<void()>& body) 
     const GpuImage& image = physical(targets.depth->port).image;
     note(image);
     stencil = image.aspect() & VK_IMAGE_ASPECT_STENCIL_BIT;
-    depth = attachment(target_view(image, targets.layer),
+    depth = attachment(target_view(image, targets),
                        layout_of(node_, targets.depth->port, image.shape().format),
                        targets.depth->clear.has_value());
     const Access access = node_.declaration.find(targets.depth->port)->access;
@@ -283,6 +294,22 @@ void Context::draw_scene(const ScenePipelines& pipelines, Cull cull, uint32_t la
       draw(d, layers);
     }
   }
+}
+
+void Context::reset(const OcclusionQueries& queries) {
+  vkCmdResetQueryPool(commands_, queries.pool(), 0, queries.count());
+}
+
+void Context::query(const OcclusionQueries& queries, uint32_t index, const std::function<void()>& draws) {
+  vkCmdBeginQuery(commands_, queries.pool(), index, 0);
+  draws();
+  vkCmdEndQuery(commands_, queries.pool(), index);
+}
+
+void Context::results(const OcclusionQueries& queries, uint32_t count, const std::string& buffer_port) {
+  constexpr VkDeviceSize kStride = 8;  // bytes: two words
+  vkCmdCopyQueryPoolResults(commands_, queries.pool(), 0, count, physical(buffer_port).buffer.handle(), 0, kStride,
+                            VK_QUERY_RESULT_WAIT_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
 }
 
 void Context::draw_fullscreen(const Pipeline& pipeline) {

@@ -12,6 +12,7 @@
 #include "engine/compile.h"
 #include "engine/device_plan.h"
 #include "engine/gpu_scene.h"
+#include "engine/occlusion_queries.h"
 #include "engine/pipeline.h"
 #include "engine/renderer.h"
 
@@ -46,6 +47,11 @@ class Environment {
   void check_mips(const std::string& port) const;
 
   void fact(const std::string& name, double value) { facts_[node_.id + "." + name] = value; }  // for run.json
+  // Queries for Context::query, all of one size.
+  OcclusionQueries occlusion_queries(uint32_t count) const { return {device_, count}; }
+  // Memory that the host writes and shaders read; visible to every later submission.
+  Buffer host_buffer(uint64_t bytes, VkBufferUsageFlags usage) const;
+
   void warn(std::string sentence) { warnings_.push_back(node_.id + ": " + std::move(sentence)); }
   const std::map<std::string, double>& facts() const { return facts_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -75,8 +81,10 @@ struct DepthTarget {
 struct Targets {
   std::vector<ColorTarget> colors;
   std::optional<DepthTarget> depth;
-  // One layer of arrays (of an image with fewer, the last); absent: all, chosen by gl_Layer.
+  // `layers` layers of arrays from this one on (of an image with fewer, the last), gl_Layer counted from it; absent: all.
   std::optional<uint32_t> layer;
+  uint32_t layers = 1;
+  Extent area{};  // pixels, where there are neither colours nor depth
 };
 
 enum class Cull {
@@ -92,7 +100,8 @@ class Context {
  public:
   // `previous`: of resources with history, the copy of the frame before.
   Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node, const NodeState& state,
-          const std::vector<Physical>& resources, const std::vector<Physical>& previous, uint32_t iteration);
+          const std::vector<Physical>& resources, const std::vector<Physical>& previous, uint32_t iteration,
+          std::function<void(std::string_view)> section = {});
 
   VkCommandBuffer commands() const { return commands_; }
   const Params& params() const { return node_.params; }
@@ -113,6 +122,8 @@ class Context {
   void dispatch_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset = 0);
   void fill(const std::string& buffer_port, uint32_t value, uint64_t offset = 0,
             uint64_t size = VK_WHOLE_SIZE);
+  // At most 64 KiB into a buffer that the pass declares transfer_write. Bytes in multiples of 4.
+  void update(const std::string& buffer_port, std::span<const std::byte> bytes, uint64_t offset = 0);
   // All texels of an image of 32-bit integers or floats (its bits) that the pass declares transfer_write.
   void clear(const std::string& image_port, uint32_t value);
   // Tightly packed texels to such an image's mip 0: all of it, or rows of a layer.
@@ -125,6 +136,10 @@ class Context {
   void generate_mips(const std::string& port);
   // Makes everything this pass wrote so far visible to its next command.
   void own_barrier();
+  // From here on, time counts to this part of the pass, a row "id.name" of its own.
+  void section(std::string_view name) {
+    if (section_) section_(name);
+  }
 
   // Raster. `body` records draws.
   void render(const Targets& targets, const std::function<void()>& body);
@@ -133,6 +148,12 @@ class Context {
   void bind_geometry();
   void set_cull(VkCullModeFlags mode);
   void draw_fullscreen(const Pipeline& pipeline);
+  // Occlusion: reset() outside render(), query() inside it, around draws; then results() to a buffer that the pass
+  // declares transfer_write: two words a query, the number of samples that passed (any number but 0 when the device
+  // only tells whether there are some) and whether the query was answered.
+  void reset(const OcclusionQueries& queries);
+  void query(const OcclusionQueries& queries, uint32_t index, const std::function<void()>& draws);
+  void results(const OcclusionQueries& queries, uint32_t count, const std::string& buffer_port);
 
  private:
   const Physical& physical(const std::string& port) const;
@@ -144,6 +165,7 @@ class Context {
   const NodeState& state_;
   const std::vector<Physical>&resources_, &previous_;
   uint32_t iteration_;
+  std::function<void(std::string_view)> section_;
 };
 
 }  // namespace gnomon

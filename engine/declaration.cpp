@@ -207,6 +207,11 @@ void Declaration::transient(std::string name, Access access, bool array, ImageSh
   ports_.back().direction = Direction::transient;
 }
 
+void Declaration::keep(std::string_view name) {
+  for (Port& port : ports_)
+    if (port.name == name) port.kept = true;
+}
+
 BufferShape Declaration::input_buffer(std::string name, Access access, std::string help) {
   check_new(ports_, name, "port");
   Port port = make_port(std::move(name), Direction::in, access, true, false, std::move(help));

@@ -206,11 +206,14 @@ void DevicePlan::write_set(const PlanNode& node, NodeState& state) {
   vkUpdateDescriptorSets(device_->handle(), 1, &w, 0, nullptr);
 }
 
-// Folded constants have their value and both copies of a history image are zero before the first frame.
+// Folded constants have their value and both copies of a history image are zero before the first frame; kept images
+// have their layout.
 void DevicePlan::fill_initial() {
   OneShot once(device_);
   for (size_t i = 0; i < resources_.size(); ++i) {
     const Resource& r = plan_.resources[i];
+    if (r.kept && !r.is_buffer && r.initial_layout != VK_IMAGE_LAYOUT_UNDEFINED)
+      change_layout(once.commands(), resources_[i].image, VK_IMAGE_LAYOUT_UNDEFINED, r.initial_layout);
     if (!r.constant && !r.history) continue;
     const auto value = r.constant.value_or(std::array<float, 4>{});
     for (const Physical* copy : {&resources_[i], &previous_[i]}) {
@@ -220,6 +223,8 @@ void DevicePlan::fill_initial() {
   }
   once.submit_and_wait();
 }
+
+void DevicePlan::forget() { fill_initial(); }
 
 // The copies of the frame before become the ones to write.
 void DevicePlan::swap_history() {

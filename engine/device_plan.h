@@ -43,6 +43,7 @@ class DevicePlan {
   const Physical& physical_at(const PlanNode& node, const std::string& port) const;
 
   void swap_history();  // between frames
+  void forget();        // history is zero again, as before the first frame; between frames
   // Records the barriers; those marked once only in a loop's first turn.
   void barriers(VkCommandBuffer commands, const std::vector<Barrier>& list, bool first_turn = true) const;
 

@@ -19,6 +19,10 @@ glm::dmat4 camera_projection(const Camera& camera, double aspect, bool reversed_
   return p;
 }
 
+glm::dmat4 view_rotation(const Camera& camera) {
+  return glm::dmat4(glm::transpose(glm::dmat3(camera.world_from_camera)));
+}
+
 // Rows of a rigid light_from_world, for positions relative to `eye`. Subtracted in double: exact at far
 // origins.
 void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, glm::vec4 (&rows)[3]) {
@@ -28,11 +32,11 @@ void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, gl
 
 }  // namespace
 
-FrameData frame_data(const Camera& camera, uint32_t width, uint32_t height, bool reversed_z, uint32_t lights,
-                     uint32_t faces, uint32_t frame) {
+FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
+                     bool reversed_z, uint32_t lights, uint32_t faces, uint32_t frame) {
   const double aspect = camera.aspect.value_or(double(width) / height);
   const glm::dmat3 world_from_camera(camera.world_from_camera);
-  const glm::dmat4 view(glm::transpose(world_from_camera));
+  const glm::dmat4 view = view_rotation(camera);
   const double half_height = std::tan(0.5 * camera.fov_y), half_width = half_height * aspect;
   FrameData data{};
   data.clip_from_relative = glm::mat4(camera_projection(camera, aspect, reversed_z) * view);
@@ -43,6 +47,10 @@ FrameData frame_data(const Camera& camera, uint32_t width, uint32_t height, bool
   data.viewport = {float(width), float(height), 1.0f / float(width), 1.0f / float(height)};
   data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, 0.0f, 0.0f};
   data.counts = {lights, faces, frame, 0};
+  const glm::dvec3 step(camera.world_from_camera[3] - previous.world_from_camera[3]);
+  data.previous_clip_from_relative =
+      glm::mat4(camera_projection(previous, previous.aspect.value_or(double(width) / height), reversed_z) *
+                view_rotation(previous) * glm::translate(glm::dmat4(1.0), step));
   return data;
 }
 
@@ -95,7 +103,7 @@ std::vector<InstanceData> instance_data(const Scene& scene, const std::vector<ui
                               glm::cross(linear[0], linear[1]));
     for (int c = 0; c < 3; ++c) data.normal_columns[c] = glm::vec4(cofactor[c], 0.0);
     data.info = {first_triangle[instance.mesh], scene.meshes[instance.mesh].material,
-                 glm::determinant(linear) < 0 ? 1u : 0u, 0u};
+                 glm::determinant(linear) < 0 ? 1u : 0u, instance.moving ? 1u : 0u};
     result.push_back(data);
   }
   return result;

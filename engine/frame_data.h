@@ -9,13 +9,14 @@
 namespace gnomon {
 
 struct FrameData {
-  glm::mat4 clip_from_relative;  // camera projection; positions are relative to the camera's eye
-  glm::mat4 view_from_relative;  // rotation
-  glm::vec4 ray_corner;          // relative position at view depth 1 of the image's top left corner
-  glm::vec4 ray_dx, ray_dy;      // step of it per pixel
-  glm::vec4 viewport;            // width, height, 1/width, 1/height
-  glm::vec4 depth;               // near plane (world units), 1 when reversed z
-  glm::uvec4 counts;             // lights, faces, frame index, unused
+  glm::mat4 clip_from_relative;           // camera projection; positions are relative to the camera's eye
+  glm::mat4 view_from_relative;           // rotation
+  glm::vec4 ray_corner;                   // relative position at view depth 1 of the image's top left corner
+  glm::vec4 ray_dx, ray_dy;               // step of it per pixel
+  glm::vec4 viewport;                     // width, height, 1/width, 1/height
+  glm::vec4 depth;                        // near plane (world units), 1 when reversed z
+  glm::uvec4 counts;                      // lights, faces, frame index, unused
+  glm::mat4 previous_clip_from_relative;  // the previous frame's camera; relative to this frame's eye
 };
 
 struct LightData {
@@ -37,7 +38,7 @@ struct FaceData {
 struct InstanceData {
   glm::mat4 relative_from_object;
   glm::vec4 normal_columns[3];  // relative_from_object's cofactor: for normals, any scale
-  glm::uvec4 info;              // first triangle, material, 1 when mirrored
+  glm::uvec4 info;              // first triangle, material, 1 when mirrored, 1 when some animation moves it
 };
 
 struct MaterialData {
@@ -48,8 +49,9 @@ struct MaterialData {
 // Where point-light faces overlap: 1/32 of the map on every side lies outside the face's 90 degrees.
 constexpr uint32_t kFaceBorderPart = 32;
 
-FrameData frame_data(const Camera& camera, uint32_t width, uint32_t height, bool reversed_z, uint32_t lights,
-                     uint32_t faces, uint32_t frame);
+// `previous`: the camera of the frame before; of the first frame, its own.
+FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
+                     bool reversed_z, uint32_t lights, uint32_t faces, uint32_t frame);
 std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFace>& faces,
                                   const glm::dvec3& eye);
 std::vector<FaceData> face_data(const std::vector<LightFace>& faces, const glm::dvec3& eye);

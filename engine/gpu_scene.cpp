@@ -7,6 +7,7 @@
 #include <cstring>
 #include <glm/gtc/type_precision.hpp>
 
+#include "engine/animation.h"
 #include "engine/commands.h"
 #include "engine/error.h"
 
@@ -79,6 +80,17 @@ Handle<VkSampler> make_sampler(const std::shared_ptr<Device>& device, const Text
   return create(device, vkCreateSampler, info, vkDestroySampler, "vkCreateSampler");
 }
 
+bool is_mirrored(const glm::dmat4& transform) { return glm::determinant(glm::dmat3(transform)) < 0; }
+
+bool same(const LightFace& a, const LightFace& b) {
+  return a.light_from_world == b.light_from_world && a.half_width == b.half_width &&
+         a.half_height == b.half_height && a.near == b.near && a.far == b.far;
+}
+
+bool same(const FrameView& a, const FrameView& b) {
+  return a.camera == b.camera && a.width == b.width && a.height == b.height && a.reversed_z == b.reversed_z;
+}
+
 }  // namespace
 
 glm::i16vec2 octahedral_snorm16(const glm::vec3& unit) {
@@ -93,7 +105,12 @@ glm::i16vec2 octahedral_snorm16(const glm::vec3& unit) {
 }
 
 GpuScene::GpuScene(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene)
-    : device_(std::move(device)), scene_(std::move(scene)), faces_(light_faces(*scene_, kFaceBorderPart, 1)) {
+    : device_(std::move(device)),
+      moving_(scene->animation ? std::make_shared<Scene>(*scene) : nullptr),
+      scene_(moving_ ? moving_ : std::move(scene)),
+      fit_(*scene_, kFaceBorderPart, 1),
+      faces_(fit_.faces(*scene_)),
+      lights_changed_(scene_->lights.size(), true) {
   upload_geometry();
   upload_textures();
   make_frame_set();
@@ -120,8 +137,7 @@ void GpuScene::upload_geometry() {
     const Material& material = scene_->materials[mesh.material];
     draws_.push_back({3 * first_triangle_[instance.mesh], uint32_t(mesh.indices.size()),
                       int32_t(first_vertex_[instance.mesh]), i, mesh.material, material.double_sided,
-                      material.alpha_masked, glm::determinant(glm::dmat3(instance.world_from_object)) < 0,
-                      mesh.watertight});
+                      material.alpha_masked, is_mirrored(instance.world_from_object), mesh.watertight});
   }
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   positions_ = upload_buffer(device_, bytes_of(positions), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kStorage);
@@ -208,16 +224,52 @@ void GpuScene::make_material_sets() {
   }
 }
 
-void GpuScene::update(uint32_t camera_index, uint32_t width, uint32_t height, bool reversed_z,
-                      uint32_t frame_index) {
-  const Camera& camera = scene_->cameras.at(camera_index);
+// Moves the scene and notes what has moved.
+void GpuScene::pose(double seconds, bool first) {
+  casters_changed_ = first;
+  lights_changed_.assign(lights_changed_.size(), first);
+  if (!moving_) return;
+  const Pose pose = pose_at(*moving_, seconds);
+  for (size_t i = 0; i < pose.instances.size(); ++i) {
+    casters_changed_ = casters_changed_ || pose.instances[i] != moving_->instances[i].world_from_object;
+    draws_[i].mirrored = is_mirrored(pose.instances[i]);
+  }
+  for (size_t i = 0; i < pose.lights.size(); ++i)
+    if (pose.lights[i] != moving_->lights[i].world_from_light) lights_changed_[i] = true;
+  apply(pose, *moving_);
+}
+
+// The faces hold all casters, wherever they have gone.
+void GpuScene::fit_faces() {
+  const std::vector<LightFace> faces = fit_.faces(*scene_);
+  for (size_t i = 0; i < faces.size(); ++i)
+    if (!same(faces[i], faces_[i])) lights_changed_[faces[i].light] = true;
+  faces_ = faces;
+}
+
+void GpuScene::update(const FrameView& view, double seconds, uint32_t frame_index) {
+  const bool first = frame_index == 0;
+  pose(seconds, first);
+  const auto any_light = [this] {
+    return std::find(lights_changed_.begin(), lights_changed_.end(), true) != lights_changed_.end();
+  };
+  if (moving_ && (casters_changed_ || any_light())) fit_faces();
+
+  const Camera& camera = scene_->cameras.at(view.camera);
+  const Camera& previous = first ? camera : camera_;
   const glm::dvec3 eye(camera.world_from_camera[3]);
-  frame_ = frame_data(camera, width, height, reversed_z, uint32_t(scene_->lights.size()),
-                      uint32_t(faces_.size()), frame_index);
+  const bool eye_moved = first || eye != glm::dvec3(previous.world_from_camera[3]);
+  camera_changed_ = first || camera.world_from_camera != previous.world_from_camera || !same(view, view_);
+  frame_ = frame_data(camera, previous, view.width, view.height, view.reversed_z,
+                      uint32_t(scene_->lights.size()), uint32_t(faces_.size()), frame_index);
   std::memcpy(frame_buffer_.bytes().data(), &frame_, sizeof(frame_));
-  write(lights_, light_data(*scene_, faces_, eye));
-  write(faces_buffer_, face_data(faces_, eye));
-  write(instances_, instance_data(*scene_, first_triangle_, eye));
+  if (eye_moved || any_light()) {  // positions are relative to the eye
+    write(lights_, light_data(*scene_, faces_, eye));
+    write(faces_buffer_, face_data(faces_, eye));
+  }
+  if (eye_moved || casters_changed_) write(instances_, instance_data(*scene_, first_triangle_, eye));
+  camera_ = camera;
+  view_ = view;
 }
 
 }  // namespace gnomon

@@ -6,6 +6,7 @@
 
 #include "engine/frame_data.h"
 #include "engine/handle.h"
+#include "engine/light_fit.h"
 #include "engine/resources.h"
 #include "engine/scene.h"
 
@@ -18,16 +19,24 @@ struct Draw {  // one instance of one mesh
   bool double_sided, alpha_masked, mirrored, watertight;
 };
 
+struct FrameView {                 // what a frame shows
+  uint32_t camera = 0;             // index into Scene::cameras
+  uint32_t width = 1, height = 1;  // pixels
+  bool reversed_z = true;
+};
+
 class GpuScene {
  public:
+  // A scene with an animation is copied: its meshes take memory twice.
   GpuScene(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene);
   GpuScene(const GpuScene&) = delete;
   GpuScene& operator=(const GpuScene&) = delete;
 
-  const Scene& scene() const { return *scene_; }
+  const Scene& scene() const { return *scene_; }  // as update() has posed it
   const std::vector<Draw>& draws() const { return draws_; }
   const std::vector<LightFace>& faces() const { return faces_; }
   const FrameData& frame() const { return frame_; }
+  const Camera& camera() const { return scene_->cameras[view_.camera]; }  // of the frame
 
   VkDescriptorSetLayout frame_layout() const { return frame_layout_.get(); }
   VkDescriptorSetLayout material_layout() const { return material_layout_.get(); }
@@ -41,8 +50,16 @@ class GpuScene {
   uint32_t first_vertex(uint32_t mesh) const { return first_vertex_[mesh]; }
   uint32_t first_triangle(uint32_t mesh) const { return first_triangle_[mesh]; }
 
-  // Writes the frame's data; the device must not be reading it.
-  void update(uint32_t camera, uint32_t width, uint32_t height, bool reversed_z, uint32_t frame_index);
+  // Moves the scene to a time of its animation, fits the light faces to it, and writes what has changed; the
+  // device must not be reading it. Frame 0 begins a sequence: it has no previous frame.
+  void update(const FrameView& view, double seconds, uint32_t frame_index);
+
+  // Since the frame before; all true in frame 0.
+  bool casters_changed() const { return casters_changed_; }  // some instance has moved
+  bool light_changed(uint32_t light) const {
+    return lights_changed_[light];
+  }                                                        // it has moved, or its faces' ranges are others
+  bool camera_changed() const { return camera_changed_; }  // its place or the view's shape
 
   struct Attributes {   // per vertex, 20 bytes
     int16_t normal[2];  // octahedral, snorm
@@ -55,11 +72,19 @@ class GpuScene {
   void upload_textures();
   void make_frame_set();
   void make_material_sets();
+  void pose(double seconds, bool first);
+  void fit_faces();
 
   std::shared_ptr<Device> device_;
+  std::shared_ptr<Scene> moving_;  // null: nothing moves
   std::shared_ptr<const Scene> scene_;
   std::vector<Draw> draws_;
+  LightFit fit_;
   std::vector<LightFace> faces_;
+  Camera camera_;  // of the frame before
+  FrameView view_;
+  bool casters_changed_ = true, camera_changed_ = true;
+  std::vector<bool> lights_changed_;  // per light
   std::vector<uint32_t> first_vertex_, first_triangle_;
   FrameData frame_{};
   Buffer positions_, attributes_, indices_, triangle_normals_, materials_;

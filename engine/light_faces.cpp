@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <span>
 
+#include "engine/area_light.h"
 #include "engine/error.h"
+#include "engine/light_fit.h"
 #include "engine/scene.h"
 
 namespace gnomon {
@@ -120,14 +123,22 @@ double scene_size(const Scene& scene) {
   return radius > 0 && std::isfinite(radius) ? radius : 1.0;
 }
 
-Range depths_inside(const Scene& scene, const LightFace& face) {
+// Which instances are measured: all, those that stand still, or those that move.
+enum class Which { all, still, moving };
+bool takes(Which which, const Instance& instance) {
+  return which == Which::all || instance.moving == (which == Which::moving);
+}
+
+// `from`: nothing nearer to the face's apex counts.
+Range depths_inside(const Scene& scene, const LightFace& face, Which which, double from = 0) {
   const Frustum frustum =
-      perspective_frustum(face.half_width, face.half_height, smallest_depth * scene_size(scene));
+      perspective_frustum(face.half_width, face.half_height, from + smallest_depth * scene_size(scene));
   Range range;
   Transformed work;
   for (const Instance& instance : scene.instances)
-    add_mesh(scene.meshes[instance.mesh], face.light_from_world * instance.world_from_object, frustum, work,
-             range);
+    if (takes(which, instance))
+      add_mesh(scene.meshes[instance.mesh], face.light_from_world * instance.world_from_object, frustum, work,
+               range);
   return range;
 }
 
@@ -137,31 +148,52 @@ void set_perspective_range(LightFace& face, Range range, double size) {
   face.near = std::max(range.lo * (1.0 - margin), face.far * smallest_near);
 }
 
+}  // namespace
+
+// What one light sees of some of the scene's instances.
+struct FaceFit {
+  Range depths;  // spot and point lights
+  Bounds box;    // directional lights: along the light's axes, about the scene's centre at time 0
+};
+
+namespace {
+
 LightFace spot_face(const Scene& scene, uint32_t index) {
   const Light& light = scene.lights[index];
   LightFace face;
   face.light = index;
   face.light_from_world = glm::inverse(light.world_from_light);
   face.half_width = face.half_height = std::tan(0.5 * light.map_fov);
-  set_perspective_range(face, depths_inside(scene, face), scene_size(scene));
   return face;
 }
 
-// Fitted to the vertices along the light's own axes. The position of a directional light means nothing: the
-// view is moved so that the map is centred on the scene and the nearest vertex is one scene depth away.
-LightFace directional_face(const Scene& scene, uint32_t index) {
-  LightFace face;
-  face.light = index;
-  face.orthographic = true;
+// The light's axes at the scene's centre, so that far origins lose no digits: the position of a directional
+// light means nothing.
+glm::dmat4 centred_axes(const Scene& scene, uint32_t index) {
   glm::dmat4 axes = scene.lights[index].world_from_light;
-  axes[3] = glm::dvec4(scene.bounds.centre(), 1.0);  // near the scene, so that far origins lose no digits
+  axes[3] = glm::dvec4(scene.bounds.centre(), 1.0);
+  return axes;
+}
+
+Bounds box_along(const Scene& scene, const glm::dmat4& axes, Which which) {
   const glm::dmat4 light_from_world = glm::inverse(axes);
   Bounds box;
   for (const Instance& instance : scene.instances) {
+    if (!takes(which, instance)) continue;
     const glm::dmat4 light_from_object = light_from_world * instance.world_from_object;
     for (const glm::vec3& p : scene.meshes[instance.mesh].positions)
       box.add(glm::dvec3(light_from_object * glm::dvec4(glm::dvec3(p), 1.0)));
   }
+  return box;
+}
+
+// Fitted to the vertices along the light's own axes: the map is centred on them and the nearest vertex is one
+// scene depth away.
+LightFace directional_face(const Scene& scene, uint32_t index, Bounds box) {
+  LightFace face;
+  face.light = index;
+  face.orthographic = true;
+  glm::dmat4 axes = centred_axes(scene, index);
   if (box.empty()) box.add(glm::dvec3(0.0));
   const double size = scene_size(scene);
   const double depth = std::max(box.max.z - box.min.z, 1e-3 * size);
@@ -187,15 +219,13 @@ constexpr std::array<Axes, 6> cube_axes = {{{{1, 0, 0}, {0, 1, 0}},
                                             {{0, 0, 1}, {0, 1, 0}},
                                             {{0, 0, -1}, {0, 1, 0}}}};
 
-void add_point_faces(const Scene& scene, uint32_t index, uint32_t map_size, uint32_t border,
-                     std::vector<LightFace>& faces) {
+std::vector<LightFace> point_faces(const Scene& scene, uint32_t index, uint32_t map_size, uint32_t border) {
   if (map_size <= 2 * static_cast<uint64_t>(border))
     fail("a border of " + std::to_string(border) + " texels leaves nothing of a map of " +
              std::to_string(map_size),
          {}, "light '" + scene.lights[index].name + "'", "use a larger shadow map");
   const double half = static_cast<double>(map_size) / (static_cast<double>(map_size) - 2.0 * border);
-  Range range;
-  const size_t first = faces.size();
+  std::vector<LightFace> faces;
   for (const Axes& axes : cube_axes) {
     glm::dmat4 light_from_face(1.0);
     light_from_face[0] = glm::dvec4(glm::cross(axes.forward, axes.up), 0.0);
@@ -205,11 +235,46 @@ void add_point_faces(const Scene& scene, uint32_t index, uint32_t map_size, uint
     face.light = index;
     face.light_from_world = glm::inverse(scene.lights[index].world_from_light * light_from_face);
     face.half_width = face.half_height = half;
-    range.add(depths_inside(scene, face));
     faces.push_back(face);
   }
-  // One range for all, so that depths can be compared across faces.
-  for (size_t i = first; i < faces.size(); ++i) set_perspective_range(faces[i], range, scene_size(scene));
+  return faces;
+}
+
+// Without their ranges; of a directional light none, as all of its face is fitted.
+std::vector<LightFace> unfitted_faces(const Scene& scene, uint32_t index, uint32_t map_size,
+                                      uint32_t border) {
+  switch (scene.lights[index].type) {
+    case LightType::spot:
+      return {spot_face(scene, index)};
+    case LightType::point:
+      return point_faces(scene, index, map_size, border);
+    case LightType::directional:
+      break;
+  }
+  return {};
+}
+
+FaceFit measure(const Scene& scene, uint32_t index, const std::vector<LightFace>& faces, Which which) {
+  FaceFit fit;
+  if (scene.lights[index].type == LightType::directional)
+    fit.box = box_along(scene, centred_axes(scene, index), which);
+  for (const LightFace& face : faces) fit.depths.add(depths_inside(scene, face, which));
+  return fit;
+}
+
+// One range for all faces of a light, so that depths can be compared across them. `still`: what was measured
+// of the instances that stand still; nullptr: nothing.
+void add_faces(const Scene& scene, uint32_t index, uint32_t map_size, uint32_t border, const FaceFit* still,
+               std::vector<LightFace>& result) {
+  std::vector<LightFace> faces = unfitted_faces(scene, index, map_size, border);
+  FaceFit fit = measure(scene, index, faces, still != nullptr ? Which::moving : Which::all);
+  if (still != nullptr) {
+    fit.depths.add(still->depths);
+    if (!still->box.empty()) fit.box.add(still->box.min), fit.box.add(still->box.max);
+  }
+  for (LightFace& face : faces) set_perspective_range(face, fit.depths, scene_size(scene));
+  if (faces.empty()) faces.push_back(directional_face(scene, index, fit.box));
+  result.insert(result.end(), faces.begin(), faces.end());
 }
 
 }  // namespace
@@ -232,20 +297,47 @@ glm::dmat4 LightFace::clip_from_light() const {
 
 std::vector<LightFace> light_faces(const Scene& scene, uint32_t map_size, uint32_t border) {
   std::vector<LightFace> faces;
-  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
-    switch (scene.lights[i].type) {
-      case LightType::spot:
-        faces.push_back(spot_face(scene, i));
-        break;
-      case LightType::directional:
-        faces.push_back(directional_face(scene, i));
-        break;
-      case LightType::point:
-        add_point_faces(scene, i, map_size, border, faces);
-        break;
-    }
-  }
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) add_faces(scene, i, map_size, border, nullptr, faces);
   return faces;
+}
+
+LightFit::LightFit(const Scene& scene, uint32_t map_size, uint32_t border)
+    : map_size_(map_size), border_(border), still_(scene.lights.size()) {
+  for (uint32_t i = 0; i < scene.lights.size(); ++i)
+    if (!scene.lights[i].moving)
+      still_[i] = measure(scene, i, unfitted_faces(scene, i, map_size, border), Which::still);
+}
+LightFit::LightFit(LightFit&&) noexcept = default;
+LightFit& LightFit::operator=(LightFit&&) noexcept = default;
+LightFit::~LightFit() = default;
+
+std::vector<LightFace> LightFit::faces(const Scene& scene) const {
+  std::vector<LightFace> faces;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i)
+    add_faces(scene, i, map_size_, border_, scene.lights[i].moving ? nullptr : &still_[i], faces);
+  return faces;
+}
+
+// Between light and receivers lies the hull of the light's rectangle and the frustum. The frustum from an apex behind
+// the light, which the rectangle just fits, holds it.
+AreaFace area_face(const Scene& scene, const LightFace& centre) {
+  const Light& light = scene.lights[centre.light];
+  if (!shines_as_area(light)) return {centre, 0};
+  const double x = 0.5 * light.area->width, y = 0.5 * light.area->height;
+  const double back = std::max(x / centre.half_width, y / centre.half_height);
+  LightFace behind = centre;
+  behind.light_from_world = glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -back)) * centre.light_from_world;
+  Range depths = depths_inside(scene, behind, Which::all, back);
+  depths.lo -= back, depths.hi -= back;
+  AreaFace result{centre, 0};
+  set_perspective_range(result.face, depths, scene_size(scene));
+  // Receivers at depth z lie within +-t z of the axis, seen from a sample at x within (+-t z - x) / z. Nearer than the
+  // light's own size the window would only widen.
+  const double nearest = std::min(std::max(result.face.near, std::max(x, y)), result.face.far);
+  const double spread = 0.5 * (1.0 / nearest - 1.0 / result.face.far);
+  result.converge = 0.5 * (1.0 / nearest + 1.0 / result.face.far);
+  result.face.half_width += x * spread, result.face.half_height += y * spread;
+  return result;
 }
 
 }  // namespace gnomon

@@ -157,6 +157,26 @@ ErrorMetrics compare_visibility(std::span<const float> result, std::span<const f
   return m;
 }
 
+std::optional<double> flicker(const SequenceImages& now, const SequenceImages& before,
+                              std::span<const uint32_t> before_of) {
+  const size_t size = before_of.size();
+  for (const SequenceImages* frame : {&now, &before}) {
+    require_size(frame->result.size(), size, "the result");
+    require_size(frame->reference.size(), size, "the reference");
+    require_size(frame->domain.size(), size, "the domain");
+  }
+  Mean change;
+  for (size_t i = 0; i < size; ++i) {
+    const size_t k = before_of[i];
+    if (k == not_seen_before || now.domain[i] != 0 || before.domain[k] != 0) continue;
+    const double error = double(now.result[i]) - now.reference[i];
+    const double error_before = double(before.result[k]) - before.reference[k];
+    change.add(std::abs(error - error_before));
+  }
+  if (change.count > 0 && !std::isfinite(change.sum)) return nan;
+  return change.optional();
+}
+
 double ssim(std::span<const float> a, std::span<const float> b, uint32_t width, uint32_t height) {
   const size_t size = size_t{width} * height;
   require_size(a.size(), size, "the first image");
@@ -200,6 +220,11 @@ const std::vector<MetricInfo>& metric_infos() {
        "K1 0.01, "
        "K2 0.03, L 1; excluded pixels take the reference's value; mean over counted pixels",
        "-1..1, 1 is equal", "Wang, Bovik, Sheikh, Simoncelli 2004, IEEE TIP 13(4), eq. 13"},
+      {"flicker",
+       "of a frame of a sequence: mean |error - error in the frame before| over counted pixels whose point "
+       "was "
+       "counted there, error = result - reference; the shadow's own movement cancels out",
+       "visibility, 0..1", "definition; compare the warping error of Lai et al. 2018, ECCV"},
       {"flip", "mean LDR-FLIP of the shaded images at 67 pixels per degree", "0..1, 0 is equal",
        "Andersson et al. 2020, Proc. ACM CGIT 3(2)"},
       {"pixels", "counted pixels: geometry, geometric normal towards the light, inside the light's frustum",

@@ -36,6 +36,22 @@ struct ErrorMetrics {
 // `result` and `reference`: visibility, width*height; `domain`: 0 = counted.
 ErrorMetrics compare_visibility(std::span<const float> result, std::span<const float> reference,
                                 std::span<const uint8_t> domain, uint32_t width, uint32_t height);
+
+// A frame of a sequence: visibility, reference and domain (0 = counted), width*height each.
+struct SequenceImages {
+  std::span<const float> result, reference;
+  std::span<const uint8_t> domain;
+};
+// Where a pixel's point was in the frame before.
+constexpr uint32_t not_seen_before = UINT32_MAX;
+// How much the error changes from one frame to the next where a point is seen in both: mean
+// |(result - reference) - (result before - reference before)| over the counted pixels whose point was counted
+// in the frame before. The shadow's own movement cancels out; what remains is popping, swimming and noise.
+// `before_of`: for each pixel its point's pixel in the frame before, or not_seen_before. Absent without such
+// pixels; NaN where a result is not finite.
+std::optional<double> flicker(const SequenceImages& now, const SequenceImages& before,
+                              std::span<const uint32_t> before_of);
+
 double ssim(std::span<const float> a, std::span<const float> b, uint32_t width, uint32_t height);
 // Linear RGB images of the same size. `pixels_per_degree`: 67 by default (0.7 m from a 0.7 m wide 4K
 // monitor).

@@ -54,7 +54,8 @@ enum class Access : uint32_t {
   indirect = 1 << 7,       // arguments of an indirect draw or dispatch
   transfer_read = 1 << 8,
   transfer_write = 1 << 9,
-  host_read = 1 << 10,  // output: mapped by the host when its segment is done. input: the controller's
+  host_read = 1 << 10,  // output: mapped by the host when its segment is done. input, or a loop
+                        // controller's own output: what decide() reads
 };
 constexpr Access operator|(Access a, Access b) { return Access(uint32_t(a) | uint32_t(b)); }
 constexpr bool has(Access set, Access one) { return (uint32_t(set) & uint32_t(one)) != 0; }
@@ -68,6 +69,7 @@ struct Port {
   bool is_buffer = false;
   bool array = false;     // GLSL sees a 2D array (layers); otherwise a plain 2D image
   bool optional = false;  // an input that may be left unconnected
+  bool kept = false;      // an output or transient that keeps its content from turn to turn and frame to frame
   ImageShape image;       // of an input: that of the connected output
   BufferShape buffer;
   std::string help;
@@ -109,6 +111,7 @@ class Declaration {
     uint32_t lights = 1;  // lights of the scene; images per light have that many layers
     uint32_t map_faces =
         1;  // shadow-map layers: 1 for each spot or directional light, 6 for each point light
+    uint64_t memory = uint64_t{1} << 30;  // bytes that a technique's shadow maps may take at a time
   };
   // shapes of the connected outputs, by input name; empty: nothing is connected (listing)
   struct Connected {
@@ -146,6 +149,10 @@ class Declaration {
   // An image of this pass alone, aliased with others' like every intermediate.
   void transient(std::string name, Access access, bool array, ImageShape shape, std::string help);
 
+  // Of an image of its own: what one turn of a loop or one frame wrote, the next one finds. Undefined before the first
+  // write.
+  void keep(std::string_view name);
+
   // Buffer ports.
   BufferShape input_buffer(std::string name, Access access, std::string help);
   std::optional<BufferShape> optional_input_buffer(std::string name, Access access, std::string help);
@@ -179,7 +186,9 @@ class Declaration {
 // What a loop's controller sees when the segment that wrote its host-read inputs is done.
 struct HostView {
   uint32_t iteration = 0;                                                   // counted from 0
-  std::function<std::span<const std::byte>(std::string_view port)> buffer;  // of a host_read input
+  std::function<std::span<const std::byte>(std::string_view port)> buffer;  // of a host_read port
+  // Of a host_read output of its own: what decide() writes, every later pass sees.
+  std::function<std::span<std::byte>(std::string_view port)> writable;
 };
 enum class Step { again, done };
 
@@ -190,6 +199,7 @@ struct Pass {
   virtual void prepare(Environment&) {}                        // pipelines, once
   virtual void record(Context&) = 0;                           // once per execution
   virtual Step decide(const HostView&) { return Step::done; }  // only for a loop's controller
+  virtual std::map<std::string, double> figures() const { return {}; }  // of the last frame, for run.json
 };
 
 // Pass types by name. Filled by GNOMON_PASS before main(); read-only afterwards.

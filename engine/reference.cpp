@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
+#include "engine/area_light.h"
 #include "engine/error.h"
 #include "engine/parallel.h"
+#include "engine/reference_light.h"
 #include "engine/reference_tracer.h"
 #include "engine/sobol.h"
 
@@ -61,7 +65,13 @@ struct NoiseSum {
 class PixelShader {
  public:
   PixelShader(const ReferenceTracer::Impl& tracer, uint32_t samples)
-      : tracer_(tracer), samples_(samples), sobol_(samples) {}
+      : tracer_(tracer), samples_(samples), sobol_(samples) {
+    for (const Light& light : tracer.scene.lights)
+      areas_.push_back(
+          is_area(light, samples)
+              ? std::optional<AreaSampler>(std::in_place, tracer.scene, light, tracer.centre_of(light).value)
+              : std::nullopt);
+  }
 
   void shade(Reference& result, const SurfaceHit& hit, size_t pixel, NoiseSum& noise) const {
     for (uint32_t i = 0; i < result.lights; ++i) {
@@ -76,8 +86,8 @@ class PixelShader {
         continue;
       }
       domain = inside_light(light, -to_light) ? Reference::counted : Reference::outside_light;
-      if (is_area(light, samples_)) {
-        visibility = area_visibility(light, centre.value, hit, static_cast<uint32_t>(pixel), i, noise);
+      if (areas_[i]) {
+        visibility = area_visibility(*areas_[i], hit, static_cast<uint32_t>(pixel), i, noise);
       } else {
         visibility = tracer_.rays.occluded(hit.position, hit.normal, centre, hit.triangle) ? 0.0f : 1.0f;
       }
@@ -85,43 +95,56 @@ class PixelShader {
   }
 
  private:
-  float area_visibility(const Light& light, const glm::dvec3& centre, const SurfaceHit& hit, uint32_t pixel,
-                        uint32_t light_index, NoiseSum& noise) const {
-    const glm::dvec3 edge_x = light.area->width * glm::dvec3(light.world_from_light[0]);
-    const glm::dvec3 edge_y = light.area->height * glm::dvec3(light.world_from_light[1]);
+  // Share of the light's emission, by luminance, that reaches a surface point.
+  float area_visibility(const AreaSampler& light, const SurfaceHit& hit, uint32_t pixel, uint32_t light_index,
+                        NoiseSum& noise) const {
+    const AreaView view = light.seen_from(hit.position);
+    if (view.surrounds()) return 1;
     const uint32_t seed = hash_combine(hash_combine(0x5bd1e995u, pixel), light_index);
-    uint32_t lit[2] = {0, 0};  // of either half
     const uint32_t half = samples_ / 2;
+    double all[2] = {0, 0}, lit[2] = {0, 0};  // emission of either half of the samples
+    uint32_t lit_count = 0;
     glm::dvec3 targets[RayScene::packet];
-    uint32_t index[RayScene::packet];
+    double weight[RayScene::packet];
+    bool later[RayScene::packet];  // of the second half
     int count = 0;
     const auto flush = [&] {
       if (count == 0) return;
       const uint32_t mask = tracer_.rays.occluded(hit.position, hit.normal, targets, count, hit.triangle);
-      for (int k = 0; k < count; ++k) lit[index[k] >= half] += (mask >> k & 1) == 0;
+      for (int k = 0; k < count; ++k) {
+        if ((mask >> k & 1) != 0) continue;
+        lit[later[k]] += weight[k];
+        ++lit_count;
+      }
       count = 0;
     };
-    for (uint32_t s = 0; s < samples_; ++s) {
-      const glm::dvec2 u = sobol_.scrambled(s, seed) - 0.5;
-      const glm::dvec3 target = centre + u.x * edge_x + u.y * edge_y;
-      if (!(glm::dot(hit.normal, target - hit.position) > 0)) continue;  // behind the surface: unlit
-      targets[count] = target;
-      index[count++] = s;
+    for (uint32_t i = 0, taken = 0; taken < samples_; ++i) {
+      const std::optional<LightSample> sample = view.sample(sobol_.scrambled(i, seed));
+      if (!sample) continue;  // not on the light
+      const bool second = taken++ >= half;
+      all[second] += sample->weight;
+      if (!(glm::dot(hit.normal, sample->target - hit.position) > 0)) continue;  // behind the surface: unlit
+      targets[count] = sample->target;
+      weight[count] = sample->weight;
+      later[count++] = second;
       if (count == RayScene::packet) flush();
     }
     flush();
-    const uint32_t total = lit[0] + lit[1];
-    if (half > 0 && total > 0 && total < samples_) {
-      const double difference = double(lit[0]) / half - double(lit[1]) / (samples_ - half);
+    if (all[0] + all[1] == 0)
+      return static_cast<float>(double(lit_count) / samples_);  // only black parts met
+    const double total = lit[0] + lit[1], most = all[0] + all[1];
+    if (all[0] > 0 && all[1] > 0 && total > 0 && lit_count < samples_) {
+      const double difference = lit[0] / all[0] - lit[1] / all[1];
       noise.sum += 0.25 * difference * difference;
       ++noise.count;
     }
-    return static_cast<float>(double(total) / samples_);
+    return static_cast<float>(total / most);
   }
 
   const ReferenceTracer::Impl& tracer_;
   uint32_t samples_;
   SobolPoints sobol_;
+  std::vector<std::optional<AreaSampler>> areas_;  // by light; nothing: a point
 };
 
 Reference empty_reference(uint32_t width, uint32_t height, uint32_t lights) {
@@ -167,9 +190,7 @@ double noise_floor(const std::vector<NoiseSum>& rows, bool any_area, uint32_t sa
 
 }  // namespace
 
-bool is_area(const Light& light, uint32_t samples) {
-  return samples > 0 && light.area && light.type != LightType::directional;
-}
+bool is_area(const Light& light, uint32_t samples) { return samples > 0 && shines_as_area(light); }
 
 ShadowTarget ReferenceTracer::Impl::centre_of(const Light& light) const {
   if (light.type == LightType::directional)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/area_light.h"
 #include "engine/error.h"
 #include "engine/parallel.h"
 #include "engine/reference_tracer.h"
@@ -88,14 +89,15 @@ std::vector<glm::dvec2> disc(double texels) {
   return offsets;
 }
 
-// The light's centre, and the corners of an area light that was traced as one.
+// The light's centre, and points of the border of an area light that was traced as one.
 std::vector<ShadowTarget> targets_of(const Light& light, const ShadowTarget& centre, bool area) {
   std::vector<ShadowTarget> targets{centre};
   if (!area) return targets;
-  const glm::dvec3 x = 0.5 * light.area->width * glm::dvec3(light.world_from_light[0]);
-  const glm::dvec3 y = 0.5 * light.area->height * glm::dvec3(light.world_from_light[1]);
-  for (const glm::dvec3& corner : {x + y, x - y, -x + y, -x - y})
-    targets.push_back({centre.value + corner, false});
+  // The centre of a polygon may be outside of it.
+  if (!on_light(*light.area, glm::dvec2(0.0))) targets.clear();
+  const glm::dmat3 axes(light.world_from_light);
+  for (const glm::dvec3& point : border_points(*light.area))
+    targets.push_back({centre.value + axes * point, false});
   return targets;
 }
 

@@ -161,6 +161,12 @@ void hash_light(KeyHash& hash, const Light& light) {
   for (const double v : {light.outer_cone, light.map_fov, light.range.value_or(-1.0),
                          light.area ? light.area->width : -1.0, light.area ? light.area->height : -1.0})
     hash.value(v);
+  // Only what a plain rectangle has not: keys of such lights stay as they were before there were other
+  // shapes.
+  if (!light.area || (light.area->shape == AreaLight::Shape::rectangle && !light.area->emission)) return;
+  hash.value(static_cast<uint32_t>(light.area->shape));
+  hash.array(light.area->outline);
+  hash.value(light.area->emission ? int64_t{*light.area->emission} : int64_t{-1});
 }
 
 void hash_view(KeyHash& hash, const Camera& camera, const ReferenceSettings& settings) {

@@ -20,8 +20,7 @@ struct ReferenceTracer::Impl {
   ShadowTarget centre_of(const Light& light) const;
 };
 
-// Is the light traced as an area, with `samples` as in ReferenceSettings? Directional lights have no area:
-// theirs would be an angle.
+// Is the light traced as an area, with `samples` as in ReferenceSettings? Only spot lights are.
 bool is_area(const Light& light, uint32_t samples);
 
 }  // namespace gnomon

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "engine/compile.h"
@@ -21,9 +22,18 @@ double ms_since(Clock::time_point start) {
 }
 
 // A wait that never ends is an error, not a hang. Generous: software devices run slow frames.
+constexpr uint32_t kMaxSections = 4096;  // in one submission; further ones count to the one before
+
 constexpr uint64_t kFenceTimeoutNs = 600ull * 1000 * 1000 * 1000;
 
 }  // namespace
+
+// What lies between two stamps: a pass, or a part of one.
+struct Part {
+  uint32_t node;
+  std::string name;  // Context::section; empty: before the first
+  double cpu_ms;
+};
 
 struct Renderer::Impl {
   Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, const Graph& graph,
@@ -34,11 +44,14 @@ struct Renderer::Impl {
   FrameTiming render(TimingMode mode);
   void run_segments(uint32_t first, uint32_t last, uint32_t iteration, TimingMode mode, FrameTiming& timing);
   void submit(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode, FrameTiming& timing);
-  void record(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode,
-              std::vector<double>& cpu_ms);
+  std::vector<Part> record(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode);
+  void record_pass(uint32_t node, uint32_t iteration, TimingMode mode, std::vector<Part>& parts);
+  void add_timings(const Segment& segment, uint32_t iteration, const std::vector<Part>& parts, double wait_ms,
+                   FrameTiming& timing) const;
   void execute(const Segment& segment);
   void run_loop(const LoopPlan& loop, TimingMode mode, FrameTiming& timing);
   HostView host_view(const PlanNode& node, uint32_t iteration) const;
+  FrameView view() const { return {settings.camera, settings.width, settings.height, settings.reversed_z}; }
   uint32_t readable(const std::string& output) const;  // index of its resource
 
   std::shared_ptr<Device> device;
@@ -55,6 +68,8 @@ struct Renderer::Impl {
   std::map<std::string, double> facts;
   std::vector<std::string> warnings;
   uint32_t frame = 0;
+  double seconds = 0, next_seconds = 0;  // the scene's time of the last frame, and of the next
+  bool playing = false;                  // time runs from frame to frame
 };
 
 Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, const Graph& graph,
@@ -66,7 +81,8 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
          scene->file.string(), "--camera", "cameras are counted from 0");
   const Camera& camera = scene->cameras[settings.camera];
   const Declaration::Setting setting{
-      {settings.width, settings.height}, uint32_t(scene->lights.size()), uint32_t(gpu_scene.faces().size())};
+      {settings.width, settings.height}, uint32_t(scene->lights.size()), uint32_t(gpu_scene.faces().size()),
+      settings.memory};
   CompileOptions options;
   options.alias = settings.alias;
   options.keep_all = settings.keep_all;
@@ -74,7 +90,7 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
   options.memory = [this](const Resource& resource) { return device_need(device, resource); };
   const double aspect = camera.aspect.value_or(double(settings.width) / settings.height);
   plan = compile(graph, setting, scene_facts(*scene, camera, aspect), options);
-  gpu_scene.update(settings.camera, settings.width, settings.height, settings.reversed_z, 0);
+  gpu_scene.update(view(), 0, 0);
 
   VkPipelineCacheCreateInfo cache_info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
   cache = create(device, vkCreatePipelineCache, cache_info, vkDestroyPipelineCache, "vkCreatePipelineCache");
@@ -86,7 +102,7 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
   check(vkAllocateCommandBuffers(device->handle(), &allocate, &commands), "vkAllocateCommandBuffers");
   VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   fence = create(device, vkCreateFence, fence_info, vkDestroyFence, "vkCreateFence");
-  stamps = std::make_unique<Timestamps>(device, uint32_t(plan.nodes.size()) + 1);
+  stamps = std::make_unique<Timestamps>(device, uint32_t(plan.nodes.size()) + 1 + kMaxSections);
 
   on_device = std::make_unique<DevicePlan>(device, gpu_scene, plan);
   prepare();
@@ -108,7 +124,9 @@ FrameTiming Renderer::Impl::render(TimingMode mode) {
   FrameTiming timing;
   const auto start = Clock::now();
   if (frame > 0) on_device->swap_history();
-  gpu_scene.update(settings.camera, settings.width, settings.height, settings.reversed_z, frame++);
+  if (playing) next_seconds = frame * settings.frame_seconds;
+  seconds = next_seconds;
+  gpu_scene.update(view(), seconds, frame++);
   uint32_t segment = 0;
   while (segment < plan.segments.size()) {
     const LoopPlan* loop = nullptr;
@@ -144,36 +162,53 @@ void Renderer::Impl::run_loop(const LoopPlan& loop, TimingMode mode, FrameTiming
 }
 
 HostView Renderer::Impl::host_view(const PlanNode& node, uint32_t iteration) const {
-  return {iteration, [this, &node](std::string_view port) -> std::span<const std::byte> {
-            if (!node.resources.contains(std::string(port)))
-              fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
-            return on_device->physical_at(node, std::string(port)).buffer.bytes();
-          }};
+  const auto bytes = [this, &node](std::string_view port) {
+    if (!node.resources.contains(std::string(port)))
+      fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
+    return on_device->physical_at(node, std::string(port)).buffer.bytes();
+  };
+  return {iteration, bytes, bytes};
 }
 
-void Renderer::Impl::record(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode,
-                            std::vector<double>& cpu_ms) {
+std::vector<Part> Renderer::Impl::record(const Segment& segment, uint32_t iteration, bool repeat,
+                                         TimingMode mode) {
   check(vkResetCommandPool(device->handle(), command_pool.get(), 0), "vkResetCommandPool");
   VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
-  const bool stamped = mode != TimingMode::none, alone = mode == TimingMode::isolated;
-  if (stamped) stamps->reset(commands), stamps->stamp(commands, alone);
+  if (mode != TimingMode::none)
+    stamps->reset(commands), stamps->stamp(commands, mode == TimingMode::isolated);
   for (const LoopPlan& loop : plan.loops)
     if (repeat && plan.segments[loop.first_segment].first == segment.first)
       on_device->barriers(commands, loop.repeat_barriers);
-  for (uint32_t i = segment.first; i < segment.last; ++i) {
-    const auto start = Clock::now();
-    on_device->barriers(commands, plan.nodes[i].barriers, iteration == 0);
-    Context context(commands, gpu_scene, plan.nodes[i], on_device->node(i), on_device->resources(),
-                    on_device->previous(), iteration);
-    plan.nodes[i].pass->record(context);
-    if (stamped) stamps->stamp(commands, alone);
-    cpu_ms.push_back(ms_since(start));
-  }
+  std::vector<Part> parts;
+  for (uint32_t i = segment.first; i < segment.last; ++i) record_pass(i, iteration, mode, parts);
   on_device->barriers(commands, segment.end_barriers);
   if (segment.last == plan.nodes.size()) on_device->barriers(commands, plan.final_barriers);
   check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+  return parts;
+}
+
+void Renderer::Impl::record_pass(uint32_t node, uint32_t iteration, TimingMode mode,
+                                 std::vector<Part>& parts) {
+  auto start = Clock::now();
+  std::string part;
+  const auto finish = [&] {
+    if (mode != TimingMode::none) stamps->stamp(commands, mode == TimingMode::isolated);
+    parts.push_back({node, part, ms_since(start)});
+    start = Clock::now();
+  };
+  const auto section = [&](std::string_view name) {
+    const bool room = parts.size() + plan.nodes.size() < kMaxSections;
+    if (name == part || !room) return;
+    finish();
+    part = name;
+  };
+  on_device->barriers(commands, plan.nodes[node].barriers, iteration == 0);
+  Context context(commands, gpu_scene, plan.nodes[node], on_device->node(node), on_device->resources(),
+                  on_device->previous(), iteration, section);
+  plan.nodes[node].pass->record(context);
+  finish();
 }
 
 void Renderer::Impl::execute(const Segment& segment) {
@@ -191,22 +226,30 @@ void Renderer::Impl::execute(const Segment& segment) {
 
 void Renderer::Impl::submit(const Segment& segment, uint32_t iteration, bool repeat, TimingMode mode,
                             FrameTiming& timing) {
-  std::vector<double> cpu_ms;
   const auto record_start = Clock::now();
-  record(segment, iteration, repeat, mode, cpu_ms);
+  const std::vector<Part> parts = record(segment, iteration, repeat, mode);
   timing.record_ms += ms_since(record_start);
   const auto wait_start = Clock::now();
   execute(segment);
-  const double wait_ms = ms_since(wait_start);
-  if (mode == TimingMode::none) return;
+  if (mode != TimingMode::none) add_timings(segment, iteration, parts, ms_since(wait_start), timing);
+}
+
+void Renderer::Impl::add_timings(const Segment& segment, uint32_t iteration, const std::vector<Part>& parts,
+                                 double wait_ms, FrameTiming& timing) const {
   const auto at = stamps->read();
   timing.gpu_ms += at.back() - at.front();
-  for (uint32_t i = segment.first; i < segment.last; ++i) {
-    const uint32_t k = i - segment.first;
-    const bool waited_for = segment.host_wait && i + 1 == segment.last;
-    timing.passes.push_back({plan.nodes[i].id, plan.nodes[i].type, iteration, at[k + 1] - at[k], cpu_ms[k],
-                             waited_for ? wait_ms : 0.0});
+  const size_t first = timing.passes.size();
+  for (size_t k = 0; k < parts.size(); ++k) {
+    const PlanNode& node = plan.nodes[parts[k].node];
+    const std::string id = parts[k].name.empty() ? node.id : node.id + "." + parts[k].name;
+    const auto known = std::find_if(timing.passes.begin() + ptrdiff_t(first), timing.passes.end(),
+                                    [&](const PassTiming& pass) { return pass.id == id; });
+    PassTiming& pass = known != timing.passes.end() ? *known : timing.passes.emplace_back();
+    pass.id = id, pass.type = node.type, pass.iteration = iteration;
+    pass.gpu_ms += at[k + 1] - at[k];
+    pass.cpu_ms += parts[k].cpu_ms;
   }
+  if (segment.host_wait) timing.passes.back().host_wait_ms = wait_ms;
 }
 
 Renderer::Renderer(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, const Graph& graph,
@@ -216,6 +259,17 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 
 FrameTiming Renderer::render(TimingMode mode) { return impl_->render(mode); }
+
+void Renderer::seek(double seconds) {
+  impl_->next_seconds = seconds;
+  impl_->playing = false;
+}
+void Renderer::play() {
+  impl_->on_device->forget();
+  impl_->frame = 0;
+  impl_->playing = true;
+}
+double Renderer::seconds() const { return impl_->seconds; }
 
 uint32_t Renderer::Impl::readable(const std::string& output) const {
   auto found = plan.outputs.find(output);
@@ -249,7 +303,12 @@ std::vector<LeftOutPass> Renderer::left_out() const {
   return result;
 }
 std::vector<std::string> Renderer::warnings() const { return impl_->warnings; }
-std::map<std::string, double> Renderer::facts() const { return impl_->facts; }
+std::map<std::string, double> Renderer::facts() const {
+  std::map<std::string, double> all = impl_->facts;
+  for (const PlanNode& node : impl_->plan.nodes)
+    for (const auto& [name, value] : node.pass->figures()) all[node.id + "." + name] = value;
+  return all;
+}
 std::string Renderer::plan_text() const { return to_text(impl_->plan); }
 std::vector<std::string> Renderer::passes() const {
   std::vector<std::string> ids;

@@ -22,6 +22,8 @@ struct RenderSettings {
   bool reversed_z = true;               // camera depth: reversed (1 near, 0 at infinity) or standard
   bool alias = true;                    // transient memory aliasing
   bool keep_all = false;                // leave nothing out
+  uint64_t memory = uint64_t{1} << 30;  // bytes that a technique's shadow maps may take at a time
+  double frame_seconds = 1.0 / 30;      // of the scene's time, from frame to frame of Renderer::play()
   std::vector<std::string> captures;    // "node.port" besides the outputs
   // What passes of type image_source show, by their id: the first channel, of the viewport's size.
   std::map<std::string, std::shared_ptr<const Image>> images;
@@ -34,7 +36,7 @@ enum class TimingMode {
 };
 
 struct PassTiming {
-  std::string id, type;
+  std::string id, type;     // of a part of a pass (Context::section): "id.part"
   uint32_t iteration = 0;   // of its loop; 0 outside loops
   double gpu_ms = 0;        // stamp to stamp, barriers included: passes add up to their segment
   double cpu_ms = 0;        // recording
@@ -63,6 +65,13 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
 
   FrameTiming render(TimingMode mode);  // one frame; returns when it is done
+  // The scene's time of the next frame and of those after it; 0 at first. Clamped to the animation's key
+  // frames.
+  void seek(double seconds);
+  // Begins a sequence: the frames so far are forgotten (history is zero, frames count from 0 again), the next
+  // frame is at time 0 and each one after it RenderSettings::frame_seconds later, until seek().
+  void play();
+  double seconds() const;  // the scene's time of the last frame
   // A graph output ("visibility", "color") or captured port after render(). Channels: one image channel per
   // component and layer: "Y" for layer 0 of a one-channel image, "light1.Y", ...; RGB(A) as
   // "R","G","B"(,"A").

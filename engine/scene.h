@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ struct Instance {
   std::string name;
   uint32_t mesh = 0;
   glm::dmat4 world_from_object{1.0};
+  bool moving = false;  // some animation moves it
 };
 
 struct Camera {  // right-handed, looks along -z; always projected with an infinite far plane
@@ -66,12 +68,19 @@ struct Camera {  // right-handed, looks along -z; always projected with an infin
   double fov_y = 0.7853981633974483;  // radians
   double near = 0.1;                  // world units
   std::optional<double> aspect;       // width / height; absent: the viewport's
+  bool moving = false;                // some animation moves it
 };
 
 enum class LightType { spot, point, directional };
 
-struct AreaLight {               // rectangle centred on the light, spanned by its local x and y
-  double width = 0, height = 0;  // world units
+// A planar shape in the light's local x-y plane, centred on the light, that emits along its local -z. A
+// sphere is the disc that faces -z.
+struct AreaLight {
+  enum class Shape { rectangle, disc, sphere, polygon } shape = Shape::rectangle;
+  double width = 0, height = 0;      // world units, of the bounding rectangle
+  std::vector<glm::dvec2> outline;   // of a polygon: simple, either orientation; local x, y in world units
+  std::optional<uint32_t> emission;  // index into Scene::textures: colour of a rectangle's parts, row 0 at +y
+  bool operator==(const AreaLight&) const = default;
 };
 
 struct Light {  // shines along its local -z (spot, directional)
@@ -84,12 +93,15 @@ struct Light {  // shines along its local -z (spot, directional)
   double map_fov = 1.5707963267948966;  // radians, full angle of a spot's square shadow-map frustum
   std::optional<double> range;          // world units; absent: no limit
   std::optional<AreaLight> area;        // from extras.area_light of the light's node, or of the scene
+  bool moving = false;                  // some animation moves it
 };
 
 struct SceneWarnings {  // counted, so that a usable scene with flaws is used and its flaws are told
   uint64_t degenerate_triangles = 0, nonfinite_triangles = 0, duplicate_vertices = 0;
   std::vector<std::string> messages;  // one sentence each, file and place included
 };
+
+struct Animation;  // engine/animation.h
 
 struct Scene {
   std::filesystem::path file;
@@ -98,9 +110,10 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Material> materials;  // never empty
   std::vector<Instance> instances;
-  std::vector<Camera> cameras;  // never empty: a default one frames the scene
-  std::vector<Light> lights;    // never empty: a default one shines on the scene
-  Bounds bounds;                // world, over all instances' vertices
+  std::vector<Camera> cameras;                 // never empty: a default one frames the scene
+  std::vector<Light> lights;                   // never empty: a default one shines on the scene
+  Bounds bounds;                               // world, over all instances' vertices, at time 0
+  std::shared_ptr<const Animation> animation;  // null: nothing moves
   SceneWarnings warnings;
   uint64_t triangles() const;  // over all instances
 };
@@ -117,9 +130,11 @@ struct SceneFacts {
   bool has_double_sided = false;
   bool has_open_meshes = false;
   bool animated = false;
+  bool casters_move = false;
   // per light:
   std::vector<bool>
-      casts_visible_shadow;        // some caster can reach a receiver that the camera can see (bounds test)
+      casts_visible_shadow;  // some caster can reach a receiver that the camera can see (bounds test)
+  std::vector<bool> light_moves;
   std::vector<double> light_size;  // largest side of the area light; 0 for a point
 };
 SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/area_light.h"
 #include "engine/mesh_clean.h"
 #include "engine/scene.h"
 
@@ -51,7 +52,7 @@ bool outside_pyramid(const Corners& corners, const glm::dmat4& view_from_world, 
   return std::find(outside.begin(), outside.end(), 8) != outside.end();
 }
 
-// The light as points: its centre, or the corners of its area.
+// The light as points whose convex hull holds it: its centre, or points around its area.
 struct Source {
   bool directional = false;
   glm::dmat4 light_from_world{1.0};  // relative to the scene's centre
@@ -65,10 +66,11 @@ Source source_of(const Light& light, const glm::dvec3& origin) {
   glm::dmat4 placed = light.world_from_light;
   placed[3] -= glm::dvec4(origin, 0.0);
   source.light_from_world = glm::inverse(placed);
-  const glm::dvec3 x = light.area ? glm::dvec3(placed[0]) * (0.5 * light.area->width) : glm::dvec3(0.0);
-  const glm::dvec3 y = light.area ? glm::dvec3(placed[1]) * (0.5 * light.area->height) : glm::dvec3(0.0);
-  for (int i = 0; i < 4; ++i)
-    source.points.push_back(glm::dvec3(placed[3]) + ((i & 1) != 0 ? x : -x) + ((i & 2) != 0 ? y : -y));
+  if (!shines_as_area(light))
+    source.points.emplace_back(placed[3]);
+  else
+    for (const glm::dvec3& p : enclosing_points(*light.area))
+      source.points.emplace_back(placed * glm::dvec4(p, 1.0));
   if (light.type == LightType::spot) source.half_tangent = std::tan(0.5 * light.map_fov);
   return source;
 }
@@ -161,7 +163,9 @@ SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect) 
     facts.has_alpha_mask |= material.alpha_masked;
     facts.has_double_sided |= material.double_sided;
     facts.has_open_meshes |= !mesh.watertight;
+    facts.casters_move |= instance.moving;
   }
+  facts.animated = scene.animation != nullptr;
   const glm::dvec3 origin = scene.bounds.empty() ? glm::dvec3(0.0) : scene.bounds.centre();
   const std::vector<Body> bodies = bodies_of(scene, origin);
   glm::dmat4 placed = camera.world_from_camera;
@@ -172,9 +176,12 @@ SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect) 
   for (const Body& body : bodies)
     visible.push_back(!outside_pyramid(body.corners, view, half_height * aspect, half_height, camera.near));
   for (const Light& light : scene.lights) {
+    const bool moving = facts.casters_move || light.moving || camera.moving;  // somewhere on the way it may
+    facts.light_moves.push_back(light.moving);
     facts.casts_visible_shadow.push_back(
+        moving ||
         casts_visible_shadow(bodies, visible, source_of(light, origin), 1e-6 * scene.bounds.radius()));
-    facts.light_size.push_back(light.area ? std::max(light.area->width, light.area->height) : 0.0);
+    facts.light_size.push_back(shines_as_area(light) ? std::max(light.area->width, light.area->height) : 0.0);
   }
   return facts;
 }

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "engine/error.h"
+#include "engine/gltf_animation.h"
 #include "engine/gltf_file.h"
 #include "engine/mesh_clean.h"
 #include "engine/scene.h"
@@ -21,10 +22,13 @@ double regularity(const glm::dmat3& m) {
 // Places the primitives of mesh nodes; reads each primitive once and shares it between its instances.
 class InstanceReader {
  public:
-  InstanceReader(const GltfFile& gltf, Scene& scene) : gltf_(gltf), scene_(scene) {}
+  // `animation`: may be null.
+  InstanceReader(const GltfFile& gltf, Scene& scene, Animation* animation)
+      : gltf_(gltf), scene_(scene), animation_(animation) {}
 
   void read(const std::vector<PlacedNode>& nodes) {
-    for (const PlacedNode& placed : nodes) {
+    for (size_t n = 0; n < nodes.size(); ++n) {
+      const PlacedNode& placed = nodes[n];
       const tinygltf::Node& node = gltf_.model.nodes[placed.node];
       if (node.mesh < 0) continue;
       if (static_cast<size_t>(node.mesh) >= gltf_.model.meshes.size())
@@ -33,22 +37,29 @@ class InstanceReader {
              gltf_.file, at(at("/nodes", placed.node), "mesh"));
       const auto mesh = static_cast<size_t>(node.mesh);
       for (size_t i = 0; i < gltf_.model.meshes[mesh].primitives.size(); ++i)
-        place(mesh, i, placed, node.name);
+        place(mesh, i, placed, n, node.name);
     }
   }
 
  private:
-  void place(size_t mesh, size_t primitive, const PlacedNode& placed, const std::string& name) {
+  // `index`: of `placed`.
+  void place(size_t mesh, size_t primitive, const PlacedNode& placed, size_t index, const std::string& name) {
     const std::optional<uint32_t> shape = read(mesh, primitive);
     if (!shape) return;
-    Instance instance{name.empty() ? scene_.meshes[*shape].name : name, *shape, placed.world_from_node};
+    Instance instance{name.empty() ? scene_.meshes[*shape].name : name, *shape, placed.world_from_node,
+                      placed.moving};
+    glm::dmat4 node_from_object(1.0);
     const glm::dmat3 axes(instance.world_from_object);
     if (regularity(axes) < 1e-9) {
       if (!flatten(instance, placed.node)) return;
     } else if (glm::determinant(axes) < 0) {
       instance.mesh = mirror(*shape);
       instance.world_from_object[0] = -instance.world_from_object[0];
+      node_from_object[0] = -node_from_object[0];
     }
+    if (instance.moving)
+      animation_->instances.push_back(
+          {static_cast<uint32_t>(scene_.instances.size()), index, node_from_object});
     scene_.instances.push_back(std::move(instance));
   }
 
@@ -85,7 +96,9 @@ class InstanceReader {
     scene_.warnings.nonfinite_triangles += dropped.nonfinite;
     scene_.warnings.messages.push_back(gltf_.file + ": " + place + ": its scale flattens the mesh; dropped " +
                                        std::to_string(dropped.degenerate + dropped.nonfinite) +
-                                       " triangles without area");
+                                       " triangles without area" +
+                                       (instance.moving ? ", and it stands still" : ""));
+    instance.moving = false;
     if (flat.indices.empty()) return false;
     make_flat_normals(flat);
     finish_mesh(flat);
@@ -98,6 +111,7 @@ class InstanceReader {
 
   const GltfFile& gltf_;
   Scene& scene_;
+  Animation* animation_;
   std::map<std::pair<size_t, size_t>, std::optional<uint32_t>> loaded_;
   std::map<uint32_t, uint32_t> mirrored_;
 };
@@ -124,12 +138,6 @@ Bounds world_bounds(const Scene& scene) {
   return bounds;
 }
 
-void warn_ignored(const GltfFile& gltf, Scene& scene) {
-  if (!gltf.model.animations.empty())
-    scene.warnings.messages.push_back(gltf.file +
-                                      ": /animations: animations are ignored, the scene stands still");
-}
-
 }  // namespace
 
 uint64_t Scene::triangles() const {
@@ -143,17 +151,19 @@ Scene load_scene(const std::filesystem::path& file) {
   scene.file = file;
   scene.name = file.stem().string();
   const GltfFile gltf = read_gltf(file, scene.warnings);
-  const std::vector<PlacedNode> nodes = walk_nodes(gltf, scene.warnings);
+  std::vector<PlacedNode> nodes = walk_nodes(gltf, scene.warnings);
+  const std::shared_ptr<Animation> animation = read_animation(gltf, nodes, scene.warnings);
   read_materials(gltf, scene);
-  InstanceReader(gltf, scene).read(nodes);
+  InstanceReader(gltf, scene, animation.get()).read(nodes);
   drop_unused_meshes(scene);
   if (scene.instances.empty())
     fail("no triangles: no node of the scene places a mesh with triangles that have an area", gltf.file,
          "/scenes");
   scene.bounds = world_bounds(scene);
-  warn_ignored(gltf, scene);
-  read_cameras(gltf, nodes, scene);
-  read_lights(gltf, nodes, scene);
+  read_cameras(gltf, nodes, scene, animation.get());
+  read_lights(gltf, nodes, scene, animation.get());
+  if (animation && !(animation->instances.empty() && animation->cameras.empty() && animation->lights.empty()))
+    scene.animation = animation;
   ensure_camera(scene);
   ensure_light(scene);
   warn_enclosed_lights(scene);

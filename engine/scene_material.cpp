@@ -8,6 +8,11 @@
 namespace gnomon {
 namespace {
 
+void add_warning(SceneWarnings& warnings, const GltfFile& gltf, const std::string& place,
+                 const std::string& what) {
+  warnings.messages.push_back(gltf.file + ": " + place + ": " + what);
+}
+
 class MaterialReader {
  public:
   MaterialReader(const GltfFile& gltf, Scene& scene) : gltf_(gltf), scene_(scene) {}
@@ -21,7 +26,7 @@ class MaterialReader {
 
  private:
   void warn(const std::string& place, const std::string& what) {
-    scene_.warnings.messages.push_back(gltf_.file + ": " + place + ": " + what);
+    add_warning(scene_.warnings, gltf_, place, what);
   }
 
   Material material(size_t index) {
@@ -56,37 +61,10 @@ class MaterialReader {
   }
 
   std::optional<uint32_t> load(size_t index) {
-    const tinygltf::Texture& source = gltf_.model.textures[index];
-    const std::string place = at("/textures", index);
-    if (source.source < 0) return warn(place, "no image that can be read; white is used"), std::nullopt;
-    if (static_cast<size_t>(source.source) >= gltf_.model.images.size())
-      fail("no image " + std::to_string(source.source), gltf_.file, at(place, "source"));
-    const tinygltf::Image& image = gltf_.model.images[static_cast<size_t>(source.source)];
-    Texture result;
-    result.name = !image.name.empty() ? image.name : "texture" + std::to_string(index);
-    if (!decode_image(image, result.width, result.height, result.rgba)) {
-      const std::string from =
-          image.uri.empty() || image.uri.rfind("data:", 0) == 0 ? "" : " '" + image.uri + "'";
-      warn(at("/images", static_cast<size_t>(source.source)),
-           "the image" + from + " cannot be read; white is used");
-      return {};
-    }
-    set_sampler(source.sampler, place, result);
-    scene_.textures.push_back(std::move(result));
+    std::optional<Texture> texture = read_texture(gltf_, index, scene_.warnings);
+    if (!texture) return {};
+    scene_.textures.push_back(std::move(*texture));
     return static_cast<uint32_t>(scene_.textures.size() - 1);
-  }
-
-  void set_sampler(int index, const std::string& place, Texture& texture) {
-    if (index < 0) return;
-    if (static_cast<size_t>(index) >= gltf_.model.samplers.size())
-      fail("no sampler " + std::to_string(index), gltf_.file, at(place, "sampler"));
-    const tinygltf::Sampler& sampler = gltf_.model.samplers[static_cast<size_t>(index)];
-    texture.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
-    texture.repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
-    texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-    if (sampler.wrapS == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ||
-        sampler.wrapT == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)
-      warn(at(place, "sampler"), "mirrored repeat is drawn as repeat");
   }
 
   const GltfFile& gltf_;
@@ -94,7 +72,48 @@ class MaterialReader {
   std::map<int, std::optional<uint32_t>> loaded_;
 };
 
+void set_sampler(const GltfFile& gltf, int index, const std::string& place, SceneWarnings& warnings,
+                 Texture& texture) {
+  if (index < 0) return;
+  if (static_cast<size_t>(index) >= gltf.model.samplers.size())
+    fail("no sampler " + std::to_string(index), gltf.file, at(place, "sampler"));
+  const tinygltf::Sampler& sampler = gltf.model.samplers[static_cast<size_t>(index)];
+  texture.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  texture.repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  if (sampler.wrapS == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ||
+      sampler.wrapT == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)
+    add_warning(warnings, gltf, at(place, "sampler"), "mirrored repeat is drawn as repeat");
+}
+
 }  // namespace
+
+std::optional<Texture> read_image(const GltfFile& gltf, size_t index, SceneWarnings& warnings) {
+  const tinygltf::Image& image = gltf.model.images[index];
+  Texture result;
+  result.name = image.name;
+  if (decode_image(image, result.width, result.height, result.rgba)) return result;
+  const std::string from =
+      image.uri.empty() || image.uri.rfind("data:", 0) == 0 ? "" : " '" + image.uri + "'";
+  add_warning(warnings, gltf, at("/images", index), "the image" + from + " cannot be read; white is used");
+  return {};
+}
+
+std::optional<Texture> read_texture(const GltfFile& gltf, size_t index, SceneWarnings& warnings) {
+  const tinygltf::Texture& source = gltf.model.textures[index];
+  const std::string place = at("/textures", index);
+  if (source.source < 0) {
+    add_warning(warnings, gltf, place, "no image that can be read; white is used");
+    return {};
+  }
+  if (static_cast<size_t>(source.source) >= gltf.model.images.size())
+    fail("no image " + std::to_string(source.source), gltf.file, at(place, "source"));
+  std::optional<Texture> result = read_image(gltf, static_cast<size_t>(source.source), warnings);
+  if (!result) return {};
+  if (result->name.empty()) result->name = "texture" + std::to_string(index);
+  set_sampler(gltf, source.sampler, place, warnings, *result);
+  return result;
+}
 
 void read_materials(const GltfFile& gltf, Scene& scene) { MaterialReader(gltf, scene).read(); }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 
 #include "engine/error.h"
 
@@ -19,32 +17,32 @@ void check_length(const GltfFile& gltf, const std::vector<double>& values, size_
     if (!std::isfinite(value) || std::abs(value) > 1e30) fail("is not finite", gltf.file, place);
 }
 
-glm::dmat4 local_transform(const GltfFile& gltf, size_t index, SceneWarnings& warnings) {
+NodeTransform local_transform(const GltfFile& gltf, size_t index, SceneWarnings& warnings) {
   const tinygltf::Node& node = gltf.model.nodes[index];
   const std::string place = at("/nodes", index);
   check_length(gltf, node.matrix, 16, at(place, "matrix"));
   check_length(gltf, node.translation, 3, at(place, "translation"));
   check_length(gltf, node.rotation, 4, at(place, "rotation"));
   check_length(gltf, node.scale, 3, at(place, "scale"));
-  glm::dmat4 result(1.0);
+  NodeTransform result;
   if (!node.matrix.empty()) {
-    for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
-    result[0].w = result[1].w = result[2].w = 0.0, result[3].w = 1.0;
+    glm::dmat4 m;
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
+    m[0].w = m[1].w = m[2].w = 0.0, m[3].w = 1.0;
+    result.matrix = m;
     return result;
   }
   if (!node.translation.empty())
-    result =
-        glm::translate(result, glm::dvec3(node.translation[0], node.translation[1], node.translation[2]));
+    result.translation = {node.translation[0], node.translation[1], node.translation[2]};
   if (!node.rotation.empty()) {
     const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
     if (glm::length(q) > 1e-12)
-      result *= glm::mat4_cast(glm::normalize(q));
+      result.rotation = glm::normalize(q);
     else
       warnings.messages.push_back(gltf.file + ": " + at(place, "rotation") +
                                   ": a quaternion of length 0 is ignored");
   }
-  if (!node.scale.empty())
-    result = glm::scale(result, glm::dvec3(node.scale[0], node.scale[1], node.scale[2]));
+  if (!node.scale.empty()) result.scale = {node.scale[0], node.scale[1], node.scale[2]};
   return result;
 }
 
@@ -81,12 +79,12 @@ const tinygltf::Value& scene_extras(const GltfFile& gltf) {
 std::vector<PlacedNode> walk_nodes(const GltfFile& gltf, SceneWarnings& warnings) {
   struct Pending {
     int node;
-    glm::dmat4 parent;
+    std::optional<size_t> parent;
     std::string place;
   };
   std::vector<Pending> stack;
   const std::vector<int> roots = root_nodes(gltf);
-  for (size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], glm::dmat4(1.0), "/scenes/nodes"});
+  for (size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], {}, "/scenes/nodes"});
   std::vector<bool> seen(gltf.model.nodes.size(), false);
   std::vector<PlacedNode> placed;
   while (!stack.empty()) {
@@ -99,34 +97,18 @@ std::vector<PlacedNode> walk_nodes(const GltfFile& gltf, SceneWarnings& warnings
     if (seen[index])
       fail("the node is reached twice: the nodes are not a tree", gltf.file, at("/nodes", index));
     seen[index] = true;
-    placed.push_back({index, pending.parent * local_transform(gltf, index, warnings)});
+    const NodeTransform local = local_transform(gltf, index, warnings);
+    const glm::dmat4 to_parent = local.parent_from_node();
+    const glm::dmat4 world = pending.parent ? placed[*pending.parent].world_from_node * to_parent : to_parent;
+    placed.push_back({index, pending.parent, local, world, false});
     for (int i = 0; i < 16; ++i)
-      if (!std::isfinite(placed.back().world_from_node[i / 4][i % 4]))
+      if (!std::isfinite(world[i / 4][i % 4]))
         fail("its transform to the world is not finite", gltf.file, at("/nodes", index));
     const auto& children = gltf.model.nodes[index].children;
-    const glm::dmat4 world = placed.back().world_from_node;
     for (size_t i = children.size(); i-- > 0;)
-      stack.push_back({children[i], world, at(at("/nodes", index), "children")});
+      stack.push_back({children[i], placed.size() - 1, at(at("/nodes", index), "children")});
   }
   return placed;
-}
-
-glm::dmat4 rigid(const glm::dmat4& transform) {
-  const auto direction = [](const glm::dvec3& v, const glm::dvec3& otherwise) {
-    const double length = glm::length(v);
-    return length > 1e-100 && std::isfinite(length) ? v / length : otherwise;
-  };
-  const glm::dvec3 z = direction(glm::dvec3(transform[2]), {0, 0, 1});
-  const glm::dvec3 spare = std::abs(z.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
-  glm::dvec3 y = direction(glm::dvec3(transform[1]), spare);
-  if (glm::length(glm::cross(y, z)) < 1e-9) y = spare;
-  const glm::dvec3 x = glm::normalize(glm::cross(y, z));
-  glm::dmat4 result(1.0);
-  result[0] = glm::dvec4(x, 0.0);
-  result[1] = glm::dvec4(glm::cross(z, x), 0.0);
-  result[2] = glm::dvec4(z, 0.0);
-  result[3] = glm::dvec4(glm::dvec3(transform[3]), 1.0);
-  return result;
 }
 
 glm::dmat4 looking_at(const glm::dvec3& eye, const glm::dvec3& target) {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "engine/error.h"
+#include "engine/scene_area.h"
 #include "engine/scene_nodes.h"
 
 namespace gnomon {
@@ -32,8 +33,13 @@ class LightReader {
  public:
   LightReader(const GltfFile& gltf, Scene& scene) : gltf_(gltf), scene_(scene) {}
 
-  void read(const std::vector<PlacedNode>& nodes) {
-    for (const PlacedNode& placed : nodes) read_node(placed);
+  void read(const std::vector<PlacedNode>& nodes, Animation* animation) {
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      const size_t before = scene_.lights.size();
+      read_node(nodes[i]);
+      if (nodes[i].moving && scene_.lights.size() > before)
+        animation->lights.push_back({static_cast<uint32_t>(before), i, glm::dmat4(1.0)});
+    }
     apply_scene_extras();
   }
 
@@ -55,6 +61,7 @@ class LightReader {
     Light light = punctual(static_cast<size_t>(index));
     if (light.name.empty()) light.name = node.name.empty() ? "light" + std::to_string(index) : node.name;
     light.world_from_light = rigid(placed.world_from_node);
+    light.moving = placed.moving;
     const bool own_fov = set_map_fov(light, node.extras);
     set_area(light, node.extras, at(place, "extras"));
     scene_.lights.push_back(std::move(light));
@@ -110,25 +117,24 @@ class LightReader {
 
   void set_area(Light& light, const tinygltf::Value& extras, const std::string& place) {
     if (!extras.IsObject() || !extras.Has("area_light")) return;
-    const tinygltf::Value& area = extras.Get("area_light");
-    const auto width = positive(area, "width"), height = positive(area, "height");
-    if (width && height)
-      light.area = AreaLight{*width, *height};
+    const std::string area_place = at(place, "area_light");
+    if (light.type == LightType::spot)
+      light.area = read_area(gltf_, extras.Get("area_light"), area_place, scene_);
     else
-      warn(at(place, "area_light"), "needs a width and a height above 0, ignored");
+      warn(area_place,
+           "only spot lights are area lights: light '" + light.name + "' shines from its centre alone");
   }
 
-  // The scene's own extras go to the first light (area) and the first spot light (map), where its node says
-  // nothing.
+  // The scene's own extras go to the first spot light, where its node says nothing.
   void apply_scene_extras() {
     const tinygltf::Value& extras = scene_extras(gltf_);
-    if (!scene_.lights.empty() && !scene_.lights[0].area)
-      set_area(scene_.lights[0], extras, "/scenes/extras");
     for (size_t i = 0; i < scene_.lights.size(); ++i) {
       if (scene_.lights[i].type != LightType::spot) continue;
+      if (!scene_.lights[i].area) set_area(scene_.lights[i], extras, "/scenes/extras");
       if (!own_fov_[i]) set_map_fov(scene_.lights[i], extras);
       return;
     }
+    if (!scene_.lights.empty()) set_area(scene_.lights[0], extras, "/scenes/extras");  // warns
   }
 
   const GltfFile& gltf_;
@@ -162,8 +168,10 @@ bool encloses(const Mesh& mesh, const glm::dvec3& point) {
 
 }  // namespace
 
-void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene) {
-  for (const PlacedNode& placed : nodes) {
+void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
+                  Animation* animation) {
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    const PlacedNode& placed = nodes[i];
     const tinygltf::Node& node = gltf.model.nodes[placed.node];
     if (node.camera < 0) continue;
     const std::string node_place = at(at("/nodes", placed.node), "camera");
@@ -181,6 +189,9 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
     Camera camera;
     camera.name = !node.name.empty() ? node.name : "camera" + std::to_string(scene.cameras.size());
     camera.world_from_camera = rigid(placed.world_from_node);
+    camera.moving = placed.moving;
+    if (placed.moving)
+      animation->cameras.push_back({static_cast<uint32_t>(scene.cameras.size()), i, glm::dmat4(1.0)});
     const tinygltf::PerspectiveCamera& view = source.perspective;
     if (std::isfinite(view.yfov) && view.yfov > 1e-4 && view.yfov < pi - 1e-4)
       camera.fov_y = view.yfov;
@@ -195,8 +206,9 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
   }
 }
 
-void read_lights(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene) {
-  LightReader(gltf, scene).read(nodes);
+void read_lights(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
+                 Animation* animation) {
+  LightReader(gltf, scene).read(nodes, animation);
 }
 
 void ensure_camera(Scene& scene) {

@@ -28,19 +28,23 @@ uint32_t second_dimension(uint32_t index) {
   return result;
 }
 
+// Bits reversed, as the scrambling wants them. The first dimension is the reversed index, so that its
+// reversal is the index itself.
+glm::uvec2 reversed_point(uint32_t index) { return {index, reverse_bits(second_dimension(index))}; }
+
 double to_unit(uint32_t bits) { return bits * 0x1p-32; }
 
 }  // namespace
 
 SobolPoints::SobolPoints(uint32_t count) {
   points_.reserve(count);
-  // The first dimension is the reversed index, so that its reversal is the index itself.
-  for (uint32_t i = 0; i < count; ++i) points_.emplace_back(i, reverse_bits(second_dimension(i)));
+  for (uint32_t i = 0; i < count; ++i) points_.push_back(reversed_point(i));
 }
 
 glm::dvec2 SobolPoints::scrambled(uint32_t i, uint32_t seed) const {
-  const uint32_t x = laine_karras_permutation(points_[i].x, hash_combine(seed, 0));
-  const uint32_t y = laine_karras_permutation(points_[i].y, hash_combine(seed, 1));
+  const glm::uvec2 point = i < points_.size() ? points_[i] : reversed_point(i);
+  const uint32_t x = laine_karras_permutation(point.x, hash_combine(seed, 0));
+  const uint32_t y = laine_karras_permutation(point.y, hash_combine(seed, 1));
   return {to_unit(reverse_bits(x)), to_unit(reverse_bits(y))};
 }
 

@@ -7,12 +7,13 @@
 
 namespace gnomon {
 
-// The first points of the 2D Sobol sequence (Joe and Kuo's first two dimensions), as 32-bit fixed point.
+// The 2D Sobol sequence (Joe and Kuo's first two dimensions), as 32-bit fixed point.
 class SobolPoints {
  public:
+  // The first `count` points come from a table; later ones take longer.
   explicit SobolPoints(uint32_t count);
   uint32_t size() const { return static_cast<uint32_t>(points_.size()); }
-  // Point `i` in [0, 1)^2, Owen-scrambled: every seed gives another randomisation that stays a
+  // Any point `i`, in [0, 1)^2, Owen-scrambled: every seed gives another randomisation that stays a
   // low-discrepancy set. Hash-based (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020).
   glm::dvec2 scrambled(uint32_t i, uint32_t seed) const;
 

@@ -40,18 +40,6 @@ auto filter(const Texture& texture, const glm::vec2& uv, const Fetch& fetch) {
          fy * ((1 - fx) * at(ix, iy + 1) + fx * at(ix + 1, iy + 1));
 }
 
-float srgb_decode(uint8_t byte) {  // IEC 61966-2-1
-  static const auto table = [] {
-    std::array<float, 256> values{};
-    for (int i = 0; i < 256; ++i) {
-      const double c = i / 255.0;
-      values[i] = float(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-    }
-    return values;
-  }();
-  return table[byte];
-}
-
 glm::vec4 texture_color(const Texture& texture, const glm::vec2& uv) {
   return filter(texture, uv, [&](uint32_t x, uint32_t y) {
     const uint8_t* p = &texture.rgba[4 * (size_t{y} * texture.width + x)];
@@ -66,6 +54,18 @@ float texture_alpha(const Texture& texture, const glm::vec2& uv) {
 }
 
 }  // namespace
+
+float srgb_decode(uint8_t byte) {
+  static const auto table = [] {
+    std::array<float, 256> values{};
+    for (int i = 0; i < 256; ++i) {
+      const double c = i / 255.0;
+      values[i] = float(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    }
+    return values;
+  }();
+  return table[byte];
+}
 
 glm::vec4 base_color(const Scene& scene, const Mesh& mesh, uint32_t triangle, const Barycentric& weights) {
   const Material& material = scene.materials[mesh.material];

@@ -1,4 +1,4 @@
-// What a triangle of a scene looks like at a point, on the CPU. Internal to the reference tracer.
+// What a triangle of a scene looks like at a point, on the CPU. Internal to the reference.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,9 @@ namespace gnomon {
 
 // Barycentric weights of a triangle's three vertices.
 using Barycentric = glm::vec3;
+
+// Linear light of an 8-bit sRGB value, 0..1 (IEC 61966-2-1).
+float srgb_decode(uint8_t byte);
 
 // Base colour factor x texture (level 0, filtered and wrapped as the texture says) x COLOR_0; linear, with
 // alpha.

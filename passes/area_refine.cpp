@@ -1,0 +1,302 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include "engine/area_light.h"
+#include "engine/context.h"
+#include "engine/error.h"
+#include "passes/area_words.h"
+#include "passes/divide_up.h"
+#include "passes/light_quads.h"
+#include "passes/pixel_list.h"
+#include "passes/sample_maps.h"
+
+namespace gnomon {
+namespace {
+
+uint32_t most_samples(int64_t levels) {
+  const uint32_t side = (1u << levels) + 1;
+  return side * side;
+}
+
+uint32_t most_questions(int64_t levels) { return levels == 0 ? 1 : 1u << (2 * (levels - 1)); }
+
+// One light's samples, and where they are among all.
+struct LightState {
+  uint32_t first = 0, capacity = 0;  // slots; `first` is a multiple of kWordSamples
+  std::vector<uint32_t> faces;
+  std::optional<LightQuads> tree;  // none: the light is a point
+  uint32_t rendered = 0;           // samples whose maps have been rendered
+  bool full = false;               // a quad stayed whole because memory for samples ran out
+};
+
+class AreaRefine : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.kind(PassKind::mixed);
+    d.summary(
+        "Refines the samples of each area light, level by level of a quad-tree, until the camera sees no banding.");
+    d.cite("Schwaerzler et al. 2012; Macedo 2018, ch. 6.1.1, algorithm 6, eq. 6.1-6.3, 6.6-6.7");
+    const int64_t levels = d.integer("levels", 4, 0, 5, "1", "how often the light's rectangle may be divided");
+    d.choice("test", "rbsm", {"rbsm", "rpcf", "pcf"},
+             "a sample's visibility: filtered RBSM, RPCF 2x2, or PCF 2x2 (then without soft discontinuities)");
+    d.integer("soft_discontinuity", 2, 0, 4, "samples", "of a quad's four, on whose silhouettes a pixel is smooth");
+    d.integer("max_size", 16, 1, 255, "texels", "longest walk along a silhouette, in each direction");
+    for (const auto& [name, factor, help] : {std::tuple{"window_0", 1, "levels 0 and 1: every n-th pixel is asked"},
+                                             std::tuple{"window_2", 2, "the same for levels 2 and 3"},
+                                             std::tuple{"window_4", 4, "the same for further levels"}})
+      d.integer(name, factor, 1, 31, "pixels", help);
+    d.choice("order", "breadth_first", {"breadth_first", "depth_first"},
+             "a level's quads together, or one by one as in the paper; the samples are the same");
+    d.choice("weights", "area", {"area", "leaf", "creation"},
+             "of the samples: their leaves' areas, or (6.5) by the finest leaf or by the level of creation");
+    const uint32_t wanted = d.setting().lights * divide_up(most_samples(levels), kWordSamples) * kWordSamples;
+    const ImageShape visibility = SampleMaps::declare(d, kWordSamples, false);
+    declare_sample_outputs(d, visibility.extent, wanted);
+    d.output_buffer("answers", Access::transfer_write | Access::host_read,
+                    {uint64_t(2) * d.setting().lights * most_questions(levels), 4, "uint"},
+                    "of each quad asked about: pixels with banding, and whether the query was answered");
+    declare_pixel_list(d, visibility.extent, "pixels on a silhouette of the samples at hand");
+  }
+
+  void prepare(Environment& e) override {
+    const Params& p = e.params();
+    find_.prepare(e, "area_refine_find.glsl");
+    walk_.prepare(e, "area_refine_walk.glsl");
+    transpose_ = e.compute("area_refine_transpose.glsl");
+    RasterState state;
+    state.vertex = "fullscreen.vert.glsl";
+    state.fragment = "area_refine_quad.glsl";
+    state.layout = VertexLayout::none;
+    quad_ = e.raster(state);
+    const uint32_t lights = uint32_t(e.scene().lights.size());
+    queries_ = e.occlusion_queries(lights * most_questions(p.integer("levels")));
+    place_lights(e);
+    maps_.prepare(e, slots_ * kMostFaces);
+    weights_kind_ = SampleWeights(p.choice_index("weights"));
+    order_ = QuadOrder(p.choice_index("order"));
+    windows_ = {uint32_t(p.integer("window_0")), uint32_t(p.integer("window_2")), uint32_t(p.integer("window_4"))};
+  }
+
+  void record(Context& c) override {
+    if (c.iteration() == 0) begin(c);
+    for (uint32_t light = 0; light < lights_.size(); ++light) sample(c, light);
+    ask(c);
+    ++turns_;
+  }
+
+  Step decide(const HostView& host) override {
+    std::vector<uint32_t> answers(2 * asked_);
+    std::memcpy(answers.data(), host.buffer("answers").data(), answers.size() * sizeof(uint32_t));
+    size_t next = 0;
+    bool more = false;
+    for (LightState& light : lights_) {
+      if (!light.tree) continue;
+      light.tree->answer(divided(light, answers, next));
+      more = more || !light.tree->questions().empty() || light.tree->samples().size() > light.rendered;
+    }
+    if (more) return Step::again;
+    finish(host);
+    return Step::done;
+  }
+
+  std::map<std::string, double> figures() const override {
+    double samples = 0, level = 0, full = 0;
+    for (const LightState& light : lights_) {
+      samples += light.rendered;
+      if (light.tree) level = std::max(level, double(light.tree->deepest_level()));
+      full += light.full ? 1 : 0;
+    }
+    return {{"light_samples", samples}, {"levels", level}, {"host_waits", turns_}, {"lights_cut_by_memory", full}};
+  }
+
+ private:
+  static constexpr uint32_t kMostFaces = 6;  // of a light
+
+  // Slots: area lights share what there is; a point takes one word.
+  void place_lights(Environment& e) {
+    const Scene& scene = e.scene();
+    lights_.resize(scene.lights.size());
+    const auto& faces = e.gpu_scene().faces();
+    for (uint32_t i = 0; i < faces.size(); ++i) lights_[faces[i].light].faces.push_back(i);
+    slots_ = e.shape("values").layers;
+    uint32_t areas = 0;
+    for (const Light& light : scene.lights) areas += shines_as_area(light) ? 1 : 0;
+    const uint32_t points = uint32_t(scene.lights.size()) - areas, words = slots_ / kWordSamples;
+    if (words < points + areas)
+      fail(fmt::format("{} lights at this size need more memory than the limit", scene.lights.size()), {}, e.id(),
+           "raise --memory or render a smaller image");
+    const uint32_t share = areas > 0 ? (words - points) / areas : 0;
+    const uint32_t most = most_samples(e.params().integer("levels"));
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < lights_.size(); ++i) {
+      const bool area = shines_as_area(scene.lights[i]);
+      lights_[i].first = first;
+      lights_[i].capacity = area ? std::min(share * kWordSamples, most) : 1;
+      first += divide_up(lights_[i].capacity, kWordSamples) * kWordSamples;
+    }
+  }
+
+  void begin(Context& c) {
+    maps_.begin(c);
+    turns_ = 0;
+    const Scene& scene = c.scene().scene();
+    for (uint32_t i = 0; i < lights_.size(); ++i) {
+      LightState& light = lights_[i];
+      light.rendered = 0;
+      light.full = false;
+      light.tree.reset();
+      if (shines_as_area(scene.lights[i]))
+        light.tree.emplace(uint32_t(c.params().integer("levels")), order_, surface_of(scene, *scene.lights[i].area));
+    }
+  }
+
+  // What the tree asks about a light of this shape.
+  static LightSurface surface_of(const Scene& scene, const AreaLight& area) {
+    if (area.shape == AreaLight::Shape::rectangle && !area.emission) return whole_rectangle();
+    return {[&area](glm::dvec2 u) { return on_light(area, place_on(area, u)); },
+            [&scene, &area](glm::dvec2 min, glm::dvec2 max) { return power_of(scene, area, min, max); }};
+  }
+
+  // Emission times area of a part, as share of the rectangle's; how much of it is on the light by a grid of points.
+  static double power_of(const Scene& scene, const AreaLight& area, glm::dvec2 min, glm::dvec2 max) {
+    constexpr int kPoints = 16;  // a side
+    double on = 0;
+    for (int y = 0; y < kPoints; ++y)
+      for (int x = 0; x < kPoints; ++x)
+        on += on_light(area, place_on(area, glm::mix(min, max, (glm::dvec2(x, y) + 0.5) / double(kPoints))));
+    const double share = on / (kPoints * kPoints);
+    const double emission =
+        area.emission ? emission_weight(emission_in(scene, area, place_on(area, min), place_on(area, max))) : 1.0;
+    return share * emission * (max.x - min.x) * (max.y - min.y);
+  }
+
+  // --- a turn: new samples ---
+
+  void sample(Context& c, uint32_t index) {
+    LightState& light = lights_[index];
+    const uint32_t count = light.tree ? uint32_t(light.tree->samples().size()) : 1;
+    const uint32_t from = light.rendered;
+    for (const uint32_t face : light.faces) write(c, light, face, from, count);
+    for (uint32_t at = from; at < count;) {
+      const uint32_t bit = at % kWordSamples;
+      const uint32_t batch = std::min({count - at, kWordSamples - bit, maps_.layers()});
+      for (const uint32_t face : light.faces) evaluate(c, index, face, at, batch);
+      at += batch;
+    }
+    light.rendered = count;
+  }
+
+  // Where a face's sample is in the buffer of samples.
+  uint32_t sample_index(const LightState& light, uint32_t face, uint32_t sample) const {
+    const auto which = uint32_t(std::find(light.faces.begin(), light.faces.end(), face) - light.faces.begin());
+    return which * slots_ + light.first + sample;
+  }
+
+  void write(Context& c, const LightState& light, uint32_t face, uint32_t from, uint32_t to) {
+    std::vector<LightPoint> points;
+    for (uint32_t i = from; i < to; ++i) {
+      const Light& source = c.scene().scene().lights[c.scene().faces()[face].light];
+      points.push_back({light.tree ? place_on(*source.area, light.tree->samples()[i]) : glm::dvec2(0.0), 1.0});
+    }
+    maps_.write(c, face, sample_index(light, face, from), points);
+  }
+
+  // Maps of up to a word's samples, and all that is kept of them.
+  void evaluate(Context& c, uint32_t index, uint32_t face, uint32_t at, uint32_t count) {
+    const LightState& light = lights_[index];
+    const uint32_t first = sample_index(light, face, at), slot = light.first + at;
+    const uint32_t word = slot / kWordSamples, bit = slot % kWordSamples;
+    c.section("maps");
+    maps_.render(c, face, first, count, 0);
+    clear_pixel_list(c);
+    c.own_barrier();
+    c.section("discontinuities");
+    const AreaPush push{index, face, first, count, 0, bit, {word, 0}};
+    c.dispatch_over(find_.ready(c, push), pixels(c));
+    c.own_barrier();
+    c.section("revectorize");
+    c.dispatch_indirect(walk_.ready(c, push), "arguments");
+    c.section("discontinuities");
+    c.push(transpose_, std::array<uint32_t, 3>{word, bit, count});
+    c.dispatch_over(transpose_, {divide_up(pixels(c).width, kWordSamples), pixels(c).height});
+    c.own_barrier();
+  }
+
+  static Extent pixels(const Context& c) { return c.shape("depth").extent; }
+
+  // --- a turn: questions ---
+
+  struct QuadPush {
+    std::array<uint32_t, 4> slots;
+    uint32_t stride;
+  };
+
+  void ask(Context& c) {
+    c.section("queries");
+    c.reset(queries_);
+    asked_ = 0;
+    for (const LightState& light : lights_)
+      if (light.tree)
+        for (const LightQuads::Quad& quad : light.tree->questions()) ask(c, light, quad);
+    if (asked_ > 0) c.results(queries_, asked_, "answers");
+  }
+
+  void ask(Context& c, const LightState& light, const LightQuads::Quad& quad) {
+    const uint32_t stride = windows_[std::min<uint32_t>(quad.level / 2, 2)];
+    QuadPush push{{}, stride};
+    for (size_t i = 0; i < 4; ++i) push.slots[i] = light.first + quad.samples[i];
+    Targets targets;
+    targets.area = {divide_up(pixels(c).width, kWordSamples), divide_up(pixels(c).height, stride)};
+    c.push(quad_, push);
+    c.render(targets, [&] { c.query(queries_, asked_, [&] { c.draw_fullscreen(quad_); }); });
+    ++asked_;
+  }
+
+  // One light's answers, from `next` on.
+  std::vector<bool> divided(LightState& light, const std::vector<uint32_t>& answers, size_t& next) const {
+    std::vector<bool> divide;
+    uint32_t room = light.capacity - uint32_t(light.tree->samples().size());
+    constexpr uint32_t kMostNew = 5;  // samples that dividing a quad makes
+    for (size_t i = 0; i < light.tree->questions().size(); ++i, next += 2) {
+      if (answers[next + 1] == 0) fail("the device did not answer an occlusion query", {}, "area_refine");
+      const bool banding = answers[next] != 0, fits = room >= kMostNew;
+      light.full = light.full || (banding && !fits);
+      divide.push_back(banding && fits);
+      if (divide.back()) room -= kMostNew;
+    }
+    return divide;
+  }
+
+  // --- the end ---
+
+  void finish(const HostView& host) {
+    const auto ranges = host.writable("sample_ranges"), weights = host.writable("weights");
+    auto* range = reinterpret_cast<uint32_t*>(ranges.data());
+    auto* weight = reinterpret_cast<float*>(weights.data());
+    for (const LightState& light : lights_) {
+      *range++ = light.first;
+      *range++ = light.rendered;
+      const std::vector<double> all = light.tree ? light.tree->weights(weights_kind_) : std::vector<double>{1.0};
+      std::copy(all.begin(), all.end(), weight + light.first);
+    }
+  }
+
+  SampleMaps maps_;
+  AreaShader find_, walk_;
+  Pipeline transpose_, quad_;
+  OcclusionQueries queries_;
+  std::vector<LightState> lights_;
+  std::array<uint32_t, 3> windows_{};
+  SampleWeights weights_kind_ = SampleWeights::area;
+  QuadOrder order_ = QuadOrder::breadth_first;
+  uint32_t slots_ = 0, asked_ = 0;
+  double turns_ = 0;
+};
+
+GNOMON_PASS("area_refine", AreaRefine);
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/context.h"
+#include "passes/area_light_points.h"
+#include "passes/sample_maps.h"
+
+namespace gnomon {
+namespace {
+
+constexpr uint32_t kFirst = 1, kLast = 2;  // bits, as in shaders/glsl/area_uniform.glsl
+
+bool is_square(int64_t n) {
+  const auto root = int64_t(std::llround(std::sqrt(double(n))));
+  return root * root == n;
+}
+
+class AreaUniform : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.kind(PassKind::mixed);
+    d.summary("Tests every camera pixel against the shadow maps of points spread over each area light.");
+    d.cite("Heckbert and Herf 1997; Macedo 2018, ch. 6.2 (uniform sampling), eq. 6.4");
+    const int64_t n = d.integer("samples", 289, 1, 4096, "1", "points of each area light");
+    const std::string pattern =
+        d.choice("pattern", "grid_corners", {"grid_corners", "grid_centres", "sobol"},
+                 "a regular grid with or without its end points, or Owen-scrambled Sobol points");
+    if (pattern != "sobol" && !is_square(n)) d.refuse("samples", "a square number for a grid");
+    const bool cache = d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
+    const ImageShape visibility = SampleMaps::declare(d, uint32_t(n) * d.setting().map_faces, cache);
+    d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
+             "0 in umbra, 1 lit; a layer a light");
+  }
+
+  void prepare(Environment& e) override {
+    test_.prepare(e, "area_uniform.glsl");
+    const auto& faces = e.gpu_scene().faces();
+    uint32_t capacity = 0;
+    for (const LightFace& face : faces) capacity += uint32_t(points(e.scene(), e.params(), face.light).size());
+    maps_.prepare(e, capacity);
+    cached_ = e.params().flag("cache") && capacity <= maps_.layers();
+    if (e.params().flag("cache") && !cached_)
+      e.warn("cache: the memory limit holds " + std::to_string(maps_.layers()) + " of " + std::to_string(capacity) +
+             " maps: none is kept");
+  }
+
+  void record(Context& c) override {
+    const auto& faces = c.scene().faces();
+    maps_.begin(c);
+    samples_ = rendered_ = 0;
+    uint32_t first = 0;
+    for (uint32_t face = 0; face < faces.size(); ++face) {
+      const std::vector<LightPoint> all = points(c.scene().scene(), c.params(), faces[face].light);
+      maps_.write(c, face, first, all);
+      sample(c, face, first, all);
+      first += uint32_t(all.size());
+    }
+    filled_ = true;
+  }
+
+  std::map<std::string, double> figures() const override {
+    return {{"light_samples", samples_}, {"maps_rendered", rendered_}};
+  }
+
+ private:
+  static std::vector<LightPoint> points(const Scene& scene, const Params& params, uint32_t light) {
+    return light_points(scene, light, uint32_t(params.integer("samples")), params.choice("pattern"));
+  }
+
+  bool keeps_maps(const Context& c, uint32_t light) const {
+    return cached_ && filled_ && !c.scene().light_changed(light) && !c.scene().casters_changed();
+  }
+
+  // Batch by batch: as many maps as there are layers, then the pixels' tests against them.
+  void sample(Context& c, uint32_t face, uint32_t first, const std::vector<LightPoint>& all) {
+    const uint32_t light = c.scene().faces()[face].light;
+    float total = 0;  // summed as the shader does, so that a fully lit pixel is 1
+    for (const LightPoint& point : all) total += float(point.weight);
+    const auto n = uint32_t(all.size());
+    const uint32_t batch = cached_ ? SampleMaps::kMostLayers : maps_.layers();
+    for (uint32_t at = 0; at < n; at += batch) {
+      const uint32_t count = std::min(batch, n - at), layer = cached_ ? first + at : 0;
+      if (!keeps_maps(c, light)) render(c, face, first + at, count, layer);
+      c.section("test");
+      const uint32_t part = (at == 0 ? kFirst : 0u) | (at + count == n ? kLast : 0u);
+      c.dispatch_over(test_.ready(c, {light, face, first + at, count, layer, 0, {part, std::bit_cast<uint32_t>(total)}}),
+                      c.shape("visibility").extent);
+      c.own_barrier();
+    }
+    samples_ += n;
+  }
+
+  void render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer) {
+    c.section("maps");
+    maps_.render(c, face, first, count, layer);
+    c.own_barrier();
+    rendered_ += count;
+  }
+
+  SampleMaps maps_;
+  AreaShader test_;
+  bool cached_ = false, filled_ = false;
+  double samples_ = 0, rendered_ = 0;
+};
+
+GNOMON_PASS("area_uniform", AreaUniform);
+
+}  // namespace
+}  // namespace gnomon

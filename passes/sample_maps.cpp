@@ -1,0 +1,118 @@
+#include "passes/sample_maps.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/frame_data.h"
+#include "engine/light_fit.h"
+
+namespace gnomon {
+namespace {
+
+struct AreaData {  // of shaders/glsl/light_samples.glsl: rows, range, info
+  glm::vec4 rows[3], range;
+  glm::uvec4 info;
+};
+struct SampleData {  // offset and weight, window
+  glm::vec4 offset_weight, window;
+};
+
+// Where a point of the light is in the frame of one of its faces.
+glm::dvec3 offset_in(const Scene& scene, const LightFace& face, const glm::dvec2& local) {
+  const glm::dmat3 turn(face.light_from_world * scene.lights[face.light].world_from_light);
+  return turn * glm::dvec3(local, 0.0);
+}
+
+}  // namespace
+
+ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache) {
+  const ImageShape depth = d.input("depth", Access::sampled, false, "the camera's device depth");
+  d.input("geometric", Access::sampled, false, "octahedral geometric normal");
+  const uint32_t size = uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each sample's shadow map"));
+  d.number("bias_constant", 0.5, 0, 1000, "texels", "shift of the receiver's plane towards the light");
+  d.number("bias_slope", 0.2, 0, 1000, "texels", "further shift, times the plane's slope");
+  constexpr uint64_t kTexelBytes = 4;
+  const uint64_t fitting = d.setting().memory / (kTexelBytes * size * size);
+  const uint32_t most = cache ? wanted : std::min(wanted, kMostLayers);
+  const uint32_t layers = uint32_t(std::clamp<uint64_t>(fitting, 1, most));
+  const ImageShape maps{{size, size}, layers, 1, VK_FORMAT_D32_SFLOAT};
+  constexpr Access kMaps = Access::depth | Access::sampled;
+  d.transient("maps", kMaps, true, maps, "depth from the samples rendered at a time, a layer each");
+  if (cache) d.keep("maps");
+  constexpr Access kHostBuffer = Access::storage_read | Access::transfer_write;  // attached: prepare()
+  d.transient_buffer("areas", kHostBuffer, {1, 16, "vec4"}, "the lights' faces, widened for their samples");
+  d.transient_buffer("samples", kHostBuffer, {1, 16, "vec4"}, "place and weight of each sample");
+  return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
+}
+
+void SampleMaps::prepare(Environment& e, uint32_t capacity) {
+  layers_ = e.shape("maps").layers;
+  RasterState state;
+  state.vertex = "sample_maps.vert.glsl";
+  state.depth = VK_FORMAT_D32_SFLOAT;
+  state.depth_test = state.depth_write = true;
+  state.depth_compare = VK_COMPARE_OP_LESS;
+  pipelines_.opaque = e.raster(state);
+  state.defines.emplace_back("MASKED", "1");
+  state.fragment = "shadow_map.glsl";
+  state.layout = VertexLayout::masked;
+  pipelines_.masked = e.raster(state);
+  areas_ = e.host_buffer(e.gpu_scene().faces().size() * sizeof(AreaData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  samples_ = e.host_buffer(capacity * sizeof(SampleData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  e.attach("areas", areas_);
+  e.attach("samples", samples_);
+}
+
+void SampleMaps::begin(Context& c) {
+  const std::vector<LightFace>& faces = c.scene().faces();
+  widened_.resize(faces.size()), converge_.resize(faces.size());
+  for (uint32_t i = 0; i < faces.size(); ++i) {
+    if (begun_ && !c.scene().light_changed(faces[i].light) && !c.scene().casters_changed()) continue;
+    const AreaFace area = area_face(c.scene().scene(), faces[i]);
+    widened_[i] = area.face, converge_[i] = area.converge;
+  }
+  begun_ = true;
+  auto* out = reinterpret_cast<AreaData*>(areas_.bytes().data());
+  for (const FaceData& data : face_data(widened_, glm::dvec3(c.scene().camera().world_from_camera[3]))) {
+    std::copy(std::begin(data.rows), std::end(data.rows), out->rows);
+    out->range = data.range;
+    (out++)->info = data.info;
+  }
+}
+
+void SampleMaps::write(const Context& c, uint32_t face, uint32_t first, std::span<const LightPoint> points) {
+  auto* out = reinterpret_cast<SampleData*>(samples_.bytes().data()) + first;
+  for (const LightPoint& point : points) {
+    const glm::dvec3 offset = offset_in(c.scene().scene(), c.scene().faces()[face], point.local);
+    out->offset_weight = glm::vec4(offset, point.weight);
+    (out++)->window = glm::vec4(-converge_[face] * glm::dvec2(offset), 0.0, 0.0);
+  }
+}
+
+void SampleMaps::render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer) {
+  constexpr uint32_t kAfterDraw = 8;  // bytes: Context::draw pushes what comes before
+  c.push(pipelines_.opaque, std::array<uint32_t, 2>{face, first}, kAfterDraw);
+  Targets targets{{}, DepthTarget{"maps", 1.0f}, layer};
+  targets.layers = count;
+  c.render(targets, [&] { c.draw_scene(pipelines_, Cull::none, count); });
+}
+
+void AreaShader::prepare(Environment& e, const std::string& file, const Defines& defines) {
+  for (const Light& light : e.scene().lights) {
+    const bool point = light.type == LightType::point;
+    Pipeline& pipeline = point ? six_faces_ : one_face_;
+    if (pipeline.handle) continue;
+    Defines all = defines;
+    if (point) all.emplace_back("SIX_FACES", "1");
+    pipeline = e.compute(file, all);
+  }
+}
+
+const Pipeline& AreaShader::ready(Context& c, const AreaPush& push) const {
+  const bool point = c.scene().scene().lights[push.light].type == LightType::point;
+  const Pipeline& pipeline = point ? six_faces_ : one_face_;
+  c.push(pipeline, push);
+  return pipeline;
+}
+
+}  // namespace gnomon
