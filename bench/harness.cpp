@@ -31,15 +31,17 @@ Row row_of(const Suite& suite, const BenchOptions& options, const Place& place, 
   row.set = config.set;
   row.size = place.size;
   row.camera = suite.camera;
+  row.memory_limit = suite.memory;
   row.reference_samples = suite.samples;
   row.device = options.device;
   std::error_code ignored;
-  const json identity = {row.scene.string(), fs::file_size(row.scene, ignored),
-                         row.graph_hash,     row.size.width,
-                         row.size.height,    row.camera,
-                         suite.repeat,       suite.instrumented,
-                         suite.samples,      row.device.name,
-                         row.device.driver,  version()};
+  json identity = {row.scene.string(), fs::file_size(row.scene, ignored),
+                   row.graph_hash,     row.size.width,
+                   row.size.height,    row.camera,
+                   suite.repeat,       suite.instrumented,
+                   suite.samples,      row.device.name,
+                   row.device.driver,  version()};
+  if (suite.frames > 0) identity.push_back({suite.frames, suite.fps});
   row.key = canonical_hash(identity);
   return row;
 }
@@ -95,6 +97,8 @@ class SuiteRun {
             {"warmup", suite_.warmup},
             {"repeat", suite_.repeat},
             {"instrumented", suite_.instrumented},
+            {"frames", suite_.frames},
+            {"fps", suite_.fps},
             {"reference", {{"samples", suite_.samples}}}};
   }
 
@@ -189,7 +193,7 @@ class SuiteRun {
     return entry;
   }
 
-  void measure(std::vector<Entry>& entries, const std::string& scene) const {
+  void measure(std::vector<Entry>& entries, Stage& stage, const std::string& scene) const {
     std::vector<Subject*> subjects;
     std::vector<Entry*> open_entries;
     size_t wanted = 0;
@@ -199,10 +203,18 @@ class SuiteRun {
       subjects.push_back(entry.subject.get());
       open_entries.push_back(&entry);
     }
-    const RoundSettings settings{suite_.warmup, suite_.repeat, suite_.instrumented};
+    RoundSettings settings{suite_.warmup, suite_.repeat, suite_.instrumented};
+    settings.sequence = suite_.frames > 0;
+    if (settings.sequence) settings.repeat = suite_.frames;
+    FrameHook on_frame;
+    if (settings.sequence)
+      on_frame = [&](size_t i, uint32_t index, const FrameTiming& timing) {
+        if (open_entries[i]->wanted)
+          stage.frame(suite_.configs[open_entries[i]->config], *subjects[i], index, timing.frame_ms);
+      };
     const std::string note = fmt::format("{}: {} techniques in turn", scene, subjects.size());
-    std::vector<Samples> samples =
-        run_rounds(subjects, settings, [&](double part) { report(note, part * double(wanted)); });
+    std::vector<Samples> samples = run_rounds(
+        subjects, settings, [&](double part) { report(note, part * double(wanted)); }, on_frame);
     for (size_t i = 0; i < open_entries.size(); ++i) {
       if (!samples[i].error.empty()) open_entries[i]->row.status = "error: " + samples[i].error;
       open_entries[i]->row.samples = std::move(samples[i]);
@@ -217,7 +229,7 @@ class SuiteRun {
       report(fmt::format("{}: {}", scene, label(suite_.configs[config])));
       entries.push_back(open(place, stage, config, true));
     }
-    measure(entries, scene);
+    measure(entries, stage, scene);
     const std::vector<double> base_ms = entries.front().row.samples.frame_ms();
     for (Entry& entry : entries) {
       if (!entry.wanted) continue;

@@ -19,6 +19,11 @@ class Stage {
   virtual ~Stage() = default;
   virtual std::unique_ptr<Subject> open(
       const SuiteConfig& config) = 0;  // compiles, uploads; Error for what cannot run
+  // After each frame of a suite's sequence.
+  virtual void frame(const SuiteConfig& config, Subject& subject, uint32_t index, double frame_ms) {
+    static_cast<void>(config), static_cast<void>(subject), static_cast<void>(index),
+        static_cast<void>(frame_ms);
+  }
   // After the rounds: memory, what was left out, warnings, error and non-finite values into the row.
   virtual void finish(const SuiteConfig& config, Subject& subject, Row& row) = 0;
 };

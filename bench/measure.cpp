@@ -42,8 +42,6 @@ constexpr OptionalField optional_fields[] = {{"penumbra_rmse", &ErrorMetrics::pe
                                              {"ssim", &ErrorMetrics::ssim},
                                              {"flip", &ErrorMetrics::flip}};
 
-std::string channel_name(uint32_t light) { return light == 0 ? "Y" : fmt::format("light{}.Y", light); }
-
 std::optional<double> mean_of(const std::vector<const ErrorMetrics*>& lights, Optional field) {
   double sum = 0;
   size_t count = 0;
@@ -113,6 +111,8 @@ std::optional<double> mean_over(std::span<const float> result, const std::vector
 
 }  // namespace
 
+std::string visibility_channel(uint32_t light) { return light == 0 ? "Y" : fmt::format("light{}.Y", light); }
+
 double measure_acne(std::span<const float> result, const Reference& reference, uint32_t light,
                     const EdgeSettings& edges) {
   std::vector<uint32_t> suspects;
@@ -150,7 +150,7 @@ MeasuredError measure_visibility(const Image& visibility, const Reference& refer
                      visibility.height, reference.width, reference.height));
   MeasuredError error;
   for (uint32_t i = 0; i < reference.lights; ++i) {
-    const auto result = visibility.plane(channel_name(i));
+    const auto result = visibility.plane(visibility_channel(i));
     ErrorMetrics m = compare_visibility(result, reference.visibility[i], reference.domain[i], reference.width,
                                         reference.height);
     const bool measurable = m.nonfinite == 0 && m.pixels > 0;

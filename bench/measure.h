@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/image.h"
@@ -12,6 +13,9 @@
 #include "engine/scene.h"
 
 namespace gnomon {
+
+// "Y", "light1.Y", ...: a light's channel of a visibility image.
+std::string visibility_channel(uint32_t light);
 
 struct MeasuredError {
   std::vector<ErrorMetrics> lights;  // one per light of the reference

@@ -153,7 +153,8 @@ json to_json(const Row& row) {
       {"reference", row.error_json.empty() ? json(nullptr) : json{{"samples", row.reference_samples}}},
       {"light_samples", light_samples_of(row.facts)},
       {"memory",
-       {{"peak_bytes", row.memory.peak_bytes},
+       {{"limit_bytes", row.memory_limit},
+        {"peak_bytes", row.memory.peak_bytes},
         {"transient_bytes", row.memory.transient_bytes},
         {"transient_bytes_without_aliasing", row.memory.transient_bytes_without_aliasing}}},
       {"left_out", left_out_of(row.left_out)},
@@ -162,6 +163,7 @@ json to_json(const Row& row) {
       {"warnings", row.warnings},
       {"facts", row.facts},
       {"status", row.status}};
+  if (row.sequence) object.update(to_json(*row.sequence));
   if (!row.key.empty()) object["key"] = row.key;
   return object;
 }

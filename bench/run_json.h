@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/rounds.h"
+#include "bench/sequence.h"
 #include "bench/statistics.h"
 #include "engine/graph.h"
 #include "engine/renderer.h"
@@ -37,12 +38,14 @@ struct Row {
   uint32_t reference_samples = 0;  // 0: hard
   DeviceInfo device;
   Samples samples;
+  uint64_t memory_limit = uint64_t{1} << 30;  // bytes: RenderSettings::memory
   MemoryUse memory;
   std::vector<LeftOutPass> left_out;
   std::vector<std::string> warnings;
   std::map<std::string, double> facts;
-  std::string error_json;  // an object (bench/measure.h); empty: not measured
-  uint64_t nonfinite = 0;  // NaN or Inf values in color and visibility
+  std::string error_json;  // an object (bench/measure.h), of a sequence its last frame's; empty: not measured
+  std::optional<SequenceResult> sequence;  // frames in order
+  uint64_t nonfinite = 0;                  // NaN or Inf values in color and visibility
   std::optional<Ratio> ratio;
   std::string status = "ok";  // or "error: ..."
 };

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "bench/sequence.h"
 #include "bench/truth.h"
+#include "engine/animation.h"
 #include "engine/error.h"
 #include "engine/image.h"
 
@@ -16,33 +20,74 @@ class DeviceSubject final : public Subject {
  public:
   explicit DeviceSubject(Renderer renderer) : renderer_(std::move(renderer)) {}
   FrameTiming render(TimingMode mode) override { return renderer_.render(mode); }
+  void play() override { renderer_.play(); }
   Renderer& renderer() { return renderer_; }
+
+  // What is measured: of a sequence its last frame, kept when it was shown.
+  struct Shown {
+    Image visibility;
+    std::optional<Image> color;
+    uint64_t nonfinite = 0;  // of a sequence's earlier frames' visibility too
+  };
+  void show(const SuiteConfig& config) {
+    shown_.visibility = renderer_.read("visibility");
+    if (config.graph.outputs.count("color") != 0) shown_.color = renderer_.read("color");
+    shown_.nonfinite += count_nonfinite(shown_.visibility);
+    if (shown_.color) shown_.nonfinite += count_nonfinite(*shown_.color);
+  }
+  Shown& shown() { return shown_; }
+  SequenceResult sequence;
 
  private:
   Renderer renderer_;
+  Shown shown_;
+};
+
+struct Sequence {       // of a suite
+  uint32_t frames = 0;  // 0: none
+  SequenceTruth truth;
 };
 
 class DeviceStage final : public Stage {
  public:
+  // `truth`: of the frame whose error is the row's.
   DeviceStage(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene,
-              const RenderSettings& settings, Truth truth)
-      : device_(std::move(device)), scene_(std::move(scene)), settings_(settings), truth_(std::move(truth)) {}
+              const RenderSettings& settings, Truth truth, Sequence sequence)
+      : device_(std::move(device)),
+        scene_(std::move(scene)),
+        settings_(settings),
+        truth_(std::move(truth)),
+        sequence_(std::move(sequence)) {}
 
   std::unique_ptr<Subject> open(const SuiteConfig& config) override {
     return std::make_unique<DeviceSubject>(Renderer(device_, scene_, config.graph, settings_));
   }
 
-  void finish(const SuiteConfig& config, Subject& subject, Row& row) override {
-    Renderer& renderer = dynamic_cast<DeviceSubject&>(subject).renderer();
-    describe_renderer(row, renderer);
+  void frame(const SuiteConfig& config, Subject& given, uint32_t index, double frame_ms) override {
+    auto& subject = dynamic_cast<DeviceSubject&>(given);
+    if (index + 1 == sequence_.frames) {
+      subject.show(config);
+      subject.sequence.add(sequence_.truth.at(index), frame_ms, subject.shown().visibility);
+    } else {
+      const Image visibility = subject.renderer().read("visibility");
+      subject.shown().nonfinite += count_nonfinite(visibility);
+      subject.sequence.add(sequence_.truth.at(index), frame_ms, visibility);
+    }
+  }
+
+  void finish(const SuiteConfig& config, Subject& given, Row& row) override {
+    auto& subject = dynamic_cast<DeviceSubject&>(given);
+    describe_renderer(row, subject.renderer());
     for (const std::string& message : scene_->warnings.messages) row.warnings.push_back(message);
-    const Image visibility = renderer.read("visibility");
-    Image color;
-    const bool shaded = config.graph.outputs.count("color") != 0;
-    if (shaded) color = renderer.read("color");
-    row.nonfinite = count_nonfinite(visibility) + count_nonfinite(color);
-    const bool finite_color = shaded && count_nonfinite(color) == 0;
-    row.error_json = truth_.error_json(visibility, finite_color ? &color : nullptr, config.graph.vars);
+    if (sequence_.frames > 0)
+      row.sequence = std::move(subject.sequence);
+    else
+      subject.show(config);
+    const auto& shown = subject.shown();
+    row.nonfinite = shown.nonfinite;
+    const bool finite_color = shown.color && count_nonfinite(*shown.color) == 0;
+    row.error_json =
+        truth_.error_json(shown.visibility, finite_color ? &*shown.color : nullptr, config.graph.vars);
   }
 
  private:
@@ -50,6 +95,7 @@ class DeviceStage final : public Stage {
   std::shared_ptr<const Scene> scene_;
   RenderSettings settings_;
   Truth truth_;
+  Sequence sequence_;
 };
 
 }  // namespace
@@ -73,7 +119,14 @@ StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& 
     settings.width = size.width;
     settings.height = size.height;
     settings.camera = suite.camera;
-    return std::make_unique<DeviceStage>(device, scene, settings, Truth(scene, reference, cache));
+    settings.memory = suite.memory;
+    settings.frame_seconds = 1.0 / suite.fps;
+    const double last = suite.frames > 0 ? (suite.frames - 1) * settings.frame_seconds : 0.0;
+    const auto shown =
+        last > 0 && scene->animation ? std::make_shared<const Scene>(posed(*scene, last)) : scene;
+    return std::make_unique<DeviceStage>(
+        device, scene, settings, Truth(shown, reference, cache),
+        Sequence{suite.frames, SequenceTruth(scene, reference, cache, settings.frame_seconds)});
   };
 }
 

@@ -270,6 +270,11 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
   suite.repeat = read_count(object, problems, file.string(), "repeat", suite.repeat, 1, 100000);
   suite.instrumented =
       read_count(object, problems, file.string(), "instrumented", suite.instrumented, 0, 100000);
+  suite.frames = read_count(object, problems, file.string(), "frames", suite.frames, 0, 100000);
+  suite.fps = object.number("fps", suite.fps);
+  if (!(suite.fps > 0 && suite.fps <= 1e6))
+    problems.add(fmt::format("'fps' is {}: must be above 0 and at most 1e6", suite.fps), file.string(),
+                 object.place_of("fps"));
   if (const json* reference = object.find("reference")) {
     if (reference->is_object()) {
       ObjectReader inner(*reference, file.string(), object.place_of("reference"), problems);

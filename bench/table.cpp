@@ -19,6 +19,7 @@ struct Column {
   const char* pointer;  // into a row
   double scale;
   int digits;
+  bool where_any = false;  // only in tables where some row has a figure
 };
 constexpr Column columns[] = {
     {"misclass. %", "/error/misclassified", 100, 3},
@@ -26,6 +27,8 @@ constexpr Column columns[] = {
     {"wrongly shad. %", "/error/wrongly_shadowed", 100, 3},
     {"acne %", "/error/acne", 100, 4},
     {"RMSE", "/error/rmse", 1, 4},
+    {"mean RMSE", "/sequence/rmse/mean", 1, 4, true},
+    {"flicker", "/flicker", 1, 5, true},
     {"ms", "/frame_ms/median", 1, 2},
     {"ratio", "/ratio/median", 1, 3},
 };
@@ -138,10 +141,22 @@ size_t technique_width(const Group& one) {
   return width;
 }
 
+// Indices of the columns that a table has.
+std::vector<size_t> shown_columns(const Group& one) {
+  std::vector<size_t> shown;
+  for (size_t i = 0; i < column_count; ++i) {
+    const auto has_figure = [i](const Line& line) { return line.figures[i].has_value(); };
+    if (!columns[i].where_any || std::any_of(one.lines.begin(), one.lines.end(), has_figure))
+      shown.push_back(i);
+  }
+  return shown;
+}
+
 std::string to_text(const Group& one) {
   const size_t width = technique_width(one);
+  const std::vector<size_t> shown = shown_columns(one);
   std::string text = one.title + "\n" + fmt::format("  {:<{}}", "technique", width);
-  for (const Column& column : columns) text += fmt::format("  {:>{}}", column.title, column_width(column));
+  for (const size_t i : shown) text += fmt::format("  {:>{}}", columns[i].title, column_width(columns[i]));
   text += "\n";
   for (const Line& line : one.lines) {
     text += fmt::format("  {:<{}}", line.technique, width);
@@ -149,7 +164,7 @@ std::string to_text(const Group& one) {
       text += "  " + line.failure + "\n";
       continue;
     }
-    for (size_t i = 0; i < column_count; ++i)
+    for (const size_t i : shown)
       text += fmt::format("  {:>{}}", cell(line.figures[i], columns[i].digits), column_width(columns[i]));
     text += "\n";
   }

@@ -59,12 +59,13 @@ std::string crossing_edges(const std::vector<glm::dvec2>& outline) {
       return fmt::format("corners {} and {} of the outline coincide", i, (i + 1) % n);
     if (cross(edge, next) == 0 && glm::dot(edge, next) < 0)
       return fmt::format("the outline turns back on itself at corner {}", (i + 1) % n);
+  }
+  for (size_t i = 0; i < n; ++i)
     for (size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j == n - 1) continue;  // neighbours
       if (segments_meet(corner(i), corner(i + 1), corner(j), corner(j + 1)))
         return fmt::format("edges {} and {} of the outline meet", i, j);
     }
-  }
   return {};
 }
 
@@ -74,9 +75,12 @@ bool on_polygon(const AreaLight& area, const glm::dvec2& p) {
   for (size_t i = 0, j = area.outline.size() - 1; i < area.outline.size(); j = i++) {
     const glm::dvec2 &a = area.outline[j], &b = area.outline[i];
     const glm::dvec2 edge = b - a;
-    const double t = std::clamp(glm::dot(p - a, edge) / glm::dot(edge, edge), 0.0, 1.0);
-    if (glm::length(p - a - t * edge) <= tolerance) return true;
-    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / edge.y * edge.x) inside = !inside;
+    const double side = cross(edge, p - a), along = glm::dot(edge, p - a), squared = glm::dot(edge, edge);
+    const double slack = border_tolerance * squared;
+    if (side * side <= tolerance * tolerance * squared && along >= -slack && along <= squared + slack)
+      return true;  // on the edge
+    // Does the ray towards +x cross the edge?
+    if ((a.y > p.y) != (b.y > p.y) && (side > 0) == (edge.y > 0)) inside = !inside;
   }
   return inside;
 }

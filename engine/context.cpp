@@ -209,7 +209,7 @@ void Context::own_barrier() { full_barrier(commands_); }
 
 void Context::render(const Targets& targets, const std::function<void()>& body) {
   std::vector<VkRenderingAttachmentInfo> colors;
-  Extent area = targets.area;
+  Extent area;
   uint32_t layers = 1;
   const auto note = [&](const GpuImage& image) {
     area = image.shape().extent;

@@ -84,7 +84,6 @@ struct Targets {
   // `layers` layers of arrays from this one on (of an image with fewer, the last), gl_Layer counted from it; absent: all.
   std::optional<uint32_t> layer;
   uint32_t layers = 1;
-  Extent area{};  // pixels, where there are neither colours nor depth
 };
 
 enum class Cull {
@@ -147,6 +146,7 @@ class Context {
   void draw(const Draw& draw, uint32_t instances = 1);  // after bind() and bind_geometry()
   void bind_geometry();
   void set_cull(VkCullModeFlags mode);
+  void set_area(Extent extent);  // viewport and scissor: the target's upper left part, in pixels
   void draw_fullscreen(const Pipeline& pipeline);
   // Occlusion: reset() outside render(), query() inside it, around draws; then results() to a buffer that the pass
   // declares transfer_write: two words a query, the number of samples that passed (any number but 0 when the device
@@ -157,7 +157,6 @@ class Context {
 
  private:
   const Physical& physical(const std::string& port) const;
-  void set_area(Extent extent);
   void copy_region(const Buffer& from, const std::string& image_port, const Rows& rows, uint32_t layers);
   VkCommandBuffer commands_;
   const GpuScene& scene_;

@@ -62,10 +62,20 @@ struct NoiseSum {
   uint64_t count = 0;
 };
 
+// How many Sobol points a pixel needs at most, roughly: those of a polygon's bounding rectangle that are not
+// on it are skipped.
+uint32_t table_size(const Scene& scene, uint32_t samples) {
+  double needed = samples;
+  for (const Light& light : scene.lights)
+    if (is_area(light, samples) && light.area->shape == AreaLight::Shape::polygon)
+      needed = std::max(needed, 1.1 * samples / std::max(coverage(*light.area), least_coverage));
+  return static_cast<uint32_t>(std::min<double>(needed, max_samples));
+}
+
 class PixelShader {
  public:
   PixelShader(const ReferenceTracer::Impl& tracer, uint32_t samples)
-      : tracer_(tracer), samples_(samples), sobol_(samples) {
+      : tracer_(tracer), samples_(samples), sobol_(table_size(tracer.scene, samples)) {
     for (const Light& light : tracer.scene.lights)
       areas_.push_back(
           is_area(light, samples)

@@ -29,6 +29,7 @@ struct LightState {
   std::vector<uint32_t> faces;
   std::optional<LightQuads> tree;  // none: the light is a point
   uint32_t rendered = 0;           // samples whose maps have been rendered
+  bool needed = true;              // some caster's shadow can be in view
   bool full = false;               // a quad stayed whole because memory for samples ran out
 };
 
@@ -44,8 +45,8 @@ class AreaRefine : public Pass {
              "a sample's visibility: filtered RBSM, RPCF 2x2, or PCF 2x2 (then without soft discontinuities)");
     d.integer("soft_discontinuity", 2, 0, 4, "samples", "of a quad's four, on whose silhouettes a pixel is smooth");
     d.integer("max_size", 16, 1, 255, "texels", "longest walk along a silhouette, in each direction");
-    for (const auto& [name, factor, help] : {std::tuple{"window_0", 1, "levels 0 and 1: every n-th pixel is asked"},
-                                             std::tuple{"window_2", 2, "the same for levels 2 and 3"},
+    for (const auto& [name, factor, help] : {std::tuple{"window_1", 1, "quads of level 0: every n-th pixel is asked"},
+                                             std::tuple{"window_2", 2, "the same for levels 1 and 2"},
                                              std::tuple{"window_4", 4, "the same for further levels"}})
       d.integer(name, factor, 1, 31, "pixels", help);
     d.choice("order", "breadth_first", {"breadth_first", "depth_first"},
@@ -58,6 +59,9 @@ class AreaRefine : public Pass {
     d.output_buffer("answers", Access::transfer_write | Access::host_read,
                     {uint64_t(2) * d.setting().lights * most_questions(levels), 4, "uint"},
                     "of each quad asked about: pixels with banding, and whether the query was answered");
+    d.transient("window", Access::color, false,
+                {{divide_up(visibility.extent.width, kWordSamples), visibility.extent.height}, 1, 1, VK_FORMAT_R8_UNORM},
+                "what the queries are drawn over; nothing is written");
     declare_pixel_list(d, visibility.extent, "pixels on a silhouette of the samples at hand");
   }
 
@@ -70,6 +74,8 @@ class AreaRefine : public Pass {
     state.vertex = "fullscreen.vert.glsl";
     state.fragment = "area_refine_quad.glsl";
     state.layout = VertexLayout::none;
+    state.colors = {VK_FORMAT_R8_UNORM};
+    state.color_write = false;
     quad_ = e.raster(state);
     const uint32_t lights = uint32_t(e.scene().lights.size());
     queries_ = e.occlusion_queries(lights * most_questions(p.integer("levels")));
@@ -77,7 +83,7 @@ class AreaRefine : public Pass {
     maps_.prepare(e, slots_ * kMostFaces);
     weights_kind_ = SampleWeights(p.choice_index("weights"));
     order_ = QuadOrder(p.choice_index("order"));
-    windows_ = {uint32_t(p.integer("window_0")), uint32_t(p.integer("window_2")), uint32_t(p.integer("window_4"))};
+    windows_ = {uint32_t(p.integer("window_1")), uint32_t(p.integer("window_2")), uint32_t(p.integer("window_4"))};
   }
 
   void record(Context& c) override {
@@ -105,7 +111,7 @@ class AreaRefine : public Pass {
   std::map<std::string, double> figures() const override {
     double samples = 0, level = 0, full = 0;
     for (const LightState& light : lights_) {
-      samples += light.rendered;
+      samples += light.needed ? light.rendered : 0;
       if (light.tree) level = std::max(level, double(light.tree->deepest_level()));
       full += light.full ? 1 : 0;
     }
@@ -114,6 +120,7 @@ class AreaRefine : public Pass {
 
  private:
   static constexpr uint32_t kMostFaces = 6;  // of a light
+  static constexpr uint32_t kNoCasters = 1;  // as in shaders/glsl/area_refine_find.glsl
 
   // Slots: area lights share what there is; a point takes one word.
   void place_lights(Environment& e) {
@@ -122,6 +129,7 @@ class AreaRefine : public Pass {
     const auto& faces = e.gpu_scene().faces();
     for (uint32_t i = 0; i < faces.size(); ++i) lights_[faces[i].light].faces.push_back(i);
     slots_ = e.shape("values").layers;
+    const std::vector<bool> needed = casts_shadow_in_view(e);
     uint32_t areas = 0;
     for (const Light& light : scene.lights) areas += shines_as_area(light) ? 1 : 0;
     const uint32_t points = uint32_t(scene.lights.size()) - areas, words = slots_ / kWordSamples;
@@ -133,6 +141,7 @@ class AreaRefine : public Pass {
     uint32_t first = 0;
     for (uint32_t i = 0; i < lights_.size(); ++i) {
       const bool area = shines_as_area(scene.lights[i]);
+      lights_[i].needed = needed[i];
       lights_[i].first = first;
       lights_[i].capacity = area ? std::min(share * kWordSamples, most) : 1;
       first += divide_up(lights_[i].capacity, kWordSamples) * kWordSamples;
@@ -148,7 +157,7 @@ class AreaRefine : public Pass {
       light.rendered = 0;
       light.full = false;
       light.tree.reset();
-      if (shines_as_area(scene.lights[i]))
+      if (light.needed && shines_as_area(scene.lights[i]))
         light.tree.emplace(uint32_t(c.params().integer("levels")), order_, surface_of(scene, *scene.lights[i].area));
     }
   }
@@ -210,11 +219,11 @@ class AreaRefine : public Pass {
     const uint32_t first = sample_index(light, face, at), slot = light.first + at;
     const uint32_t word = slot / kWordSamples, bit = slot % kWordSamples;
     c.section("maps");
-    maps_.render(c, face, first, count, 0);
+    if (light.needed) maps_.render(c, face, first, count, 0);
     clear_pixel_list(c);
     c.own_barrier();
     c.section("discontinuities");
-    const AreaPush push{index, face, first, count, 0, bit, {word, 0}};
+    const AreaPush push{index, face, first, count, 0, bit, {word, light.needed ? 0u : kNoCasters}};
     c.dispatch_over(find_.ready(c, push), pixels(c));
     c.own_barrier();
     c.section("revectorize");
@@ -245,13 +254,15 @@ class AreaRefine : public Pass {
   }
 
   void ask(Context& c, const LightState& light, const LightQuads::Quad& quad) {
-    const uint32_t stride = windows_[std::min<uint32_t>(quad.level / 2, 2)];
+    const uint32_t stride = windows_[std::min<uint32_t>((quad.level + 1) / 2, 2)];
     QuadPush push{{}, stride};
     for (size_t i = 0; i < 4; ++i) push.slots[i] = light.first + quad.samples[i];
-    Targets targets;
-    targets.area = {divide_up(pixels(c).width, kWordSamples), divide_up(pixels(c).height, stride)};
-    c.push(quad_, push);
-    c.render(targets, [&] { c.query(queries_, asked_, [&] { c.draw_fullscreen(quad_); }); });
+    c.render({{ColorTarget{"window", {}}}, {}, {}}, [&] {
+      c.bind(quad_);  // lavapipe begins no query without a pipeline
+      c.push(quad_, push);
+      c.set_area({divide_up(pixels(c).width, kWordSamples), divide_up(pixels(c).height, stride)});
+      c.query(queries_, asked_, [&] { c.draw_fullscreen(quad_); });
+    });
     ++asked_;
   }
 

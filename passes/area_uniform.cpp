@@ -35,6 +35,7 @@ class AreaUniform : public Pass {
 
   void prepare(Environment& e) override {
     test_.prepare(e, "area_uniform.glsl");
+    needed_ = casts_shadow_in_view(e);
     const auto& faces = e.gpu_scene().faces();
     uint32_t capacity = 0;
     for (const LightFace& face : faces) capacity += uint32_t(points(e.scene(), e.params(), face.light).size());
@@ -51,9 +52,10 @@ class AreaUniform : public Pass {
     samples_ = rendered_ = 0;
     uint32_t first = 0;
     for (uint32_t face = 0; face < faces.size(); ++face) {
-      const std::vector<LightPoint> all = points(c.scene().scene(), c.params(), faces[face].light);
+      std::vector<LightPoint> all;
+      if (needed_[faces[face].light]) all = points(c.scene().scene(), c.params(), faces[face].light);
       maps_.write(c, face, first, all);
-      sample(c, face, first, all);
+      all.empty() ? test(c, face, {}, kFirst | kLast, 0) : sample(c, face, first, all);
       first += uint32_t(all.size());
     }
     filled_ = true;
@@ -82,13 +84,22 @@ class AreaUniform : public Pass {
     for (uint32_t at = 0; at < n; at += batch) {
       const uint32_t count = std::min(batch, n - at), layer = cached_ ? first + at : 0;
       if (!keeps_maps(c, light)) render(c, face, first + at, count, layer);
-      c.section("test");
       const uint32_t part = (at == 0 ? kFirst : 0u) | (at + count == n ? kLast : 0u);
-      c.dispatch_over(test_.ready(c, {light, face, first + at, count, layer, 0, {part, std::bit_cast<uint32_t>(total)}}),
-                      c.shape("visibility").extent);
-      c.own_barrier();
+      test(c, face, {first + at, count, layer}, part, total);
     }
     samples_ += n;
+  }
+
+  struct Batch {
+    uint32_t first = 0, count = 0, layer = 0;
+  };
+  // Without samples: nothing shadows the light's receivers.
+  void test(Context& c, uint32_t face, const Batch& batch, uint32_t part, float total) {
+    c.section("test");
+    const AreaPush push{c.scene().faces()[face].light, face, batch.first, batch.count, batch.layer, 0,
+                        {part, std::bit_cast<uint32_t>(total)}};
+    c.dispatch_over(test_.ready(c, push), c.shape("visibility").extent);
+    c.own_barrier();
   }
 
   void render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer) {
@@ -100,6 +111,7 @@ class AreaUniform : public Pass {
 
   SampleMaps maps_;
   AreaShader test_;
+  std::vector<bool> needed_;  // per light
   bool cached_ = false, filled_ = false;
   double samples_ = 0, rendered_ = 0;
 };

@@ -40,16 +40,19 @@ uint32_t LightQuads::sample_at(glm::uvec2 point, uint32_t level) {
   return known - 1;
 }
 
-// Finds or makes the samples at a quad's corners. False: none of them is on the light.
-bool LightQuads::corners(Quad& quad) {
-  uint32_t some = kOffLight;
+// Finds or makes the samples at a quad's corners. Returns how many of them are on the light.
+uint32_t LightQuads::corners(Quad& quad) {
+  uint32_t some = kOffLight, on = 0;
   for (size_t i = 0; i < 4; ++i) {
     quad.samples[i] = sample_at(quad.corner + kCorners[i], quad.level);
-    if (quad.samples[i] != kOffLight) some = quad.samples[i];
+    if (quad.samples[i] == kOffLight) continue;
+    some = quad.samples[i];
+    quad.on[i] = true;
+    ++on;
   }
   for (uint32_t& sample : quad.samples)
     if (sample == kOffLight) sample = some;
-  return some != kOffLight;
+  return on;
 }
 
 bool LightQuads::touches_light(const Quad& quad) const {
@@ -57,17 +60,20 @@ bool LightQuads::touches_light(const Quad& quad) const {
 }
 
 void LightQuads::children(const Quad& quad, std::vector<Quad>& into) const {
-  for (const glm::uvec2& corner : kCorners) into.push_back({quad.level + 1, 2u * quad.corner + corner, {}});
+  for (const glm::uvec2& corner : kCorners) into.push_back({quad.level + 1, 2u * quad.corner + corner, {}, {}});
 }
 
-// A quad without a corner on the light cannot be asked about: it is divided as long as it holds a part of the light.
+// A quad without a corner on the light cannot be asked about: it is divided as long as it holds a part of the light. So
+// is a large one of which one or two corners are: their answers say little about the rest.
 void LightQuads::open(const Quad& asked) {
+  constexpr uint32_t kAskedFrom = 2;  // level
+  constexpr uint32_t kEnough = 3;     // corners
   if (!touches_light(asked)) return;
   Quad quad = asked;
-  const bool sampled = corners(quad);
+  const uint32_t sampled = corners(quad);
   if (quad.level == levels_) {
-    if (sampled) leaves_.push_back(quad);
-  } else if (sampled) {
+    if (sampled > 0) leaves_.push_back(quad);
+  } else if (sampled >= kEnough || (sampled > 0 && quad.level >= kAskedFrom)) {
     questions_.push_back(quad);
   } else {
     std::vector<Quad> parts;
@@ -111,9 +117,11 @@ std::vector<double> LightQuads::weights(SampleWeights kind) const {
   std::vector<uint32_t> finest(places_.size(), 0);
   for (const Quad& leaf : leaves_) {
     const double power = surface_.power(place_of(leaf.corner, leaf.level), place_of(leaf.corner + 1u, leaf.level));
-    for (const uint32_t sample : leaf.samples) {
-      weights[sample] += 0.25 * power;
-      finest[sample] = std::max(finest[sample], leaf.level);
+    const auto corners = double(std::count(leaf.on.begin(), leaf.on.end(), true));
+    for (size_t i = 0; i < 4; ++i) {
+      if (!leaf.on[i]) continue;
+      weights[leaf.samples[i]] += power / corners;
+      finest[leaf.samples[i]] = std::max(finest[leaf.samples[i]], leaf.level);
     }
   }
   if (kind != SampleWeights::area)

@@ -24,7 +24,7 @@ enum class QuadOrder {
 };
 
 enum class SampleWeights {
-  area,     // each leaf gives a quarter of its power to each of its corners: the trapezoid rule
+  area,     // each leaf gives its corners equal parts of its power: the trapezoid rule
   leaf,     // (6.5) with the level of the finest leaf that touches the sample
   creation  // (6.5) with the level that a sample was made at
 };
@@ -35,6 +35,7 @@ class LightQuads {
     uint32_t level = 0;
     glm::uvec2 corner{0};               // lower corner, on a grid of 2^level cells a side
     std::array<uint32_t, 4> samples{};  // at its corners (0,0) (1,0) (0,1) (1,1); where one is off the light, another's
+    std::array<bool, 4> on{};           // is the corner on the light?
   };
 
   // `levels`: how often a quad may be divided, 0..5: at most (2^levels + 1)^2 samples.
@@ -56,7 +57,7 @@ class LightQuads {
   void open(const Quad& quad);
   void children(const Quad& quad, std::vector<Quad>& into) const;
   bool touches_light(const Quad& quad) const;
-  bool corners(Quad& quad);
+  uint32_t corners(Quad& quad);
   uint32_t sample_at(glm::uvec2 point, uint32_t level);
   void next();
 

@@ -18,6 +18,7 @@ std::vector<Face> world_faces(const Scene& scene) {
   const glm::dvec3 centre = scene.bounds.centre();
   std::vector<Face> faces;
   for (const Instance& instance : scene.instances) {
+    if (instance.moving) continue;  // planes are found once
     const Mesh& mesh = scene.meshes[instance.mesh];
     const auto corner = [&](size_t i) {
       return glm::dvec3(instance.world_from_object * glm::dvec4(mesh.positions[mesh.indices[i]], 1.0)) -

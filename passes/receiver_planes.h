@@ -17,7 +17,8 @@ struct ReceiverPlane {
 // float positions of the scene's size round to, with room for a few operations.
 inline constexpr double kCoplanarPart = 4e-6;
 
-// At most `most`, largest area first. Triangles of all instances count, whichever way they face.
+// At most `most`, largest area first. Triangles of all instances that stand still count, whichever way they
+// face.
 std::vector<ReceiverPlane> receiver_planes(const Scene& scene, size_t most);
 
 }  // namespace gnomon

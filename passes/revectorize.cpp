@@ -1,4 +1,5 @@
 #include "engine/context.h"
+#include "passes/divide_up.h"
 #include "passes/pixel_list.h"
 #include "passes/receiver_ports.h"
 
@@ -35,7 +36,7 @@ class Revectorize : public Pass {
       if (light > 0) c.own_barrier();  // the list is used again
       clear_pixel_list(c);
       c.own_barrier();
-      find_.dispatch_over(c, light, shape.extent);
+      find_.dispatch_over(c, light, {divide_up(shape.extent.width, 2), divide_up(shape.extent.height, 2)});
       c.own_barrier();
       walk_.dispatch_indirect(c, light, "arguments");
     }

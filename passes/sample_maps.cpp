@@ -45,13 +45,14 @@ ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache) {
   return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
 }
 
-void SampleMaps::prepare(Environment& e, uint32_t capacity) {
+void SampleMaps::prepare(Environment& e, uint32_t capacity, bool split) {
   layers_ = e.shape("maps").layers;
   RasterState state;
   state.vertex = "sample_maps.vert.glsl";
   state.depth = VK_FORMAT_D32_SFLOAT;
   state.depth_test = state.depth_write = true;
   state.depth_compare = VK_COMPARE_OP_LESS;
+  if (split) state.defines.emplace_back("SPLIT_MOVING", "1");
   pipelines_.opaque = e.raster(state);
   state.defines.emplace_back("MASKED", "1");
   state.fragment = "shadow_map.glsl";
@@ -90,11 +91,29 @@ void SampleMaps::write(const Context& c, uint32_t face, uint32_t first, std::spa
 }
 
 void SampleMaps::render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer) {
-  constexpr uint32_t kAfterDraw = 8;  // bytes: Context::draw pushes what comes before
-  c.push(pipelines_.opaque, std::array<uint32_t, 2>{face, first}, kAfterDraw);
   Targets targets{{}, DepthTarget{"maps", 1.0f}, layer};
   targets.layers = count;
+  render(c, face, first, targets, count);
+}
+
+void SampleMaps::render_split(Context& c, uint32_t face, uint32_t sample) {
+  Targets targets{{}, DepthTarget{"maps", 1.0f}, 0};
+  targets.layers = 2;
+  render(c, face, sample, targets, 1);
+}
+
+void SampleMaps::render(Context& c, uint32_t face, uint32_t first, const Targets& targets, uint32_t count) {
+  constexpr uint32_t kAfterDraw = 8;  // bytes: Context::draw pushes what comes before
+  c.push(pipelines_.opaque, std::array<uint32_t, 2>{face, first}, kAfterDraw);
   c.render(targets, [&] { c.draw_scene(pipelines_, Cull::none, count); });
+}
+
+std::vector<bool> casts_shadow_in_view(const Environment& e) {
+  const Camera& camera = e.scene().cameras[e.settings().camera];
+  const double aspect = camera.aspect.value_or(double(e.settings().width) / e.settings().height);
+  const SceneFacts facts = scene_facts(e.scene(), camera, aspect);
+  if (e.settings().keep_all || facts.animated) return std::vector<bool>(e.scene().lights.size(), true);
+  return facts.casts_visible_shadow;
 }
 
 void AreaShader::prepare(Environment& e, const std::string& file, const Defines& defines) {

@@ -27,8 +27,8 @@ class SampleMaps {
   // from frame to frame when `cache`. Returns the shape of a visibility image: one layer a light.
   static ImageShape declare(Declaration& d, uint32_t wanted, bool cache);
 
-  // `capacity`: samples at most, over all lights.
-  void prepare(Environment& e, uint32_t capacity);
+  // `capacity`: samples at most, over all lights. `split`: render_split() is used instead of render().
+  void prepare(Environment& e, uint32_t capacity, bool split = false);
   // The frame's light faces.
   void begin(Context& c);
   // Writes samples [first, first + points.size()), of the face's light.
@@ -36,8 +36,11 @@ class SampleMaps {
   uint32_t layers() const { return layers_; }
   // Renders samples [first, first + count) of a face to layers from `layer` on, keeping the others.
   void render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer);
+  // Renders one sample of a face: what stands still to layer 0, instances that some animation moves to layer 1.
+  void render_split(Context& c, uint32_t face, uint32_t sample);
 
  private:
+  void render(Context& c, uint32_t face, uint32_t first, const Targets& targets, uint32_t count);
   ScenePipelines pipelines_;
   Buffer areas_, samples_;          // host-visible
   std::vector<LightFace> widened_;  // AreaFace, per face
@@ -45,6 +48,10 @@ class SampleMaps {
   bool begun_ = false;
   uint32_t layers_ = 0;
 };
+
+// Per light: can a caster's shadow of it be in view (SceneFacts)? Where not, no map is needed. All, where the scene
+// moves or nothing is to be left out.
+std::vector<bool> casts_shadow_in_view(const Environment& e);
 
 // What area_query.glsl is pushed.
 struct AreaPush {

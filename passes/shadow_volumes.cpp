@@ -70,6 +70,10 @@ class ShadowVolumes : public Pass {
   }
 
   void record(Context& c) override {
+    if (c.scene().casters_changed()) {
+      casters_ = instance_bounds(c.scene().scene());
+      chosen_for_.clear();
+    }
     choose(c.scene().scene());
     for (uint32_t light = 0; light < z_fail_.size(); ++light) {
       if (light > 0) c.own_barrier();
@@ -156,8 +160,7 @@ class ShadowVolumes : public Pass {
     return ops;
   }
 
-  // z-fail wherever the near plane may be inside a volume. Asked again only when the camera or a light has
-  // moved.
+  // z-fail wherever the near plane may be inside a volume. Asked again only when something has moved.
   void choose(const Scene& scene) {
     const Camera& camera = scene.cameras[camera_];
     std::vector<glm::dmat4> seen{camera.world_from_camera};

@@ -10,7 +10,6 @@ namespace {
 
 // As in shaders/glsl/strip_filter.glsl.
 constexpr uint32_t kCell = 8, kStrip = 8, kListGroup = 64;  // pixels; cells; invocations
-constexpr uint32_t kPlain = 1;                              // state of a cell that is all lit
 constexpr uint64_t kWord = 4;                               // bytes
 constexpr uint64_t kAlongX = 0, kAlongY = 4, kReach = 8, kControlWords = 9;
 
@@ -63,11 +62,16 @@ void StripFilter::declare(Declaration& d) const {
   const Strips strips(shape);
   const uint64_t layers = shape.layers;
   d.transient("rows", kList, true, {shape.extent, shape.layers, 1, VK_FORMAT_R32_SFLOAT}, "filtered along x");
+  // What the G-buffer holds, so that the second direction reads one image instead of two.
+  d.transient("surfaces", kList, true, {shape.extent, shape.layers, 1, VK_FORMAT_R32G32_UINT},
+              "device depth and octahedral geometric normal of what is filtered");
   d.transient_buffer("cell_states", kList | Access::transfer_write,
                      {uint64_t(strips.cells_x) * strips.cells_y * layers, 4, "uint"},
-                     "of each cell of 8x8 pixels: all in umbra, all lit, or mixed");
-  d.transient_buffer("strip_flags", kList, {strips.along_y * layers, 4, "uint"},
-                     "1: the strip along y is listed");
+                     "whether each cell of 8x8 pixels holds light, shadow, both or nothing of its own");
+  d.transient_buffer("needed_y", kList, {strips.along_y * layers, 4, "uint"},
+                     "cells of each strip along y that the filter may change, a bit each");
+  d.transient_buffer("needed_x", kList, {strips.along_x * layers, 4, "uint"},
+                     "cells of each strip along x that the filter along y reads, a bit each");
   d.transient_buffer("strips_y", kList, {strips.along_y * layers, 4, "uint"}, "strips along y to filter");
   d.transient_buffer("strips_x", kList, {strips.along_x * layers, 4, "uint"}, "strips along x to filter");
   d.transient_buffer("control", kList | Access::indirect | Access::transfer_write, {kControlWords, 4, "uint"},
@@ -95,7 +99,7 @@ void StripFilter::record(Context& c) {
     dispatch(pipeline);
   };
   clear_lists(c);
-  if (tiled_) c.fill("cell_states", kPlain);
+  if (tiled_) c.fill("cell_states", 0);
   run(classify_, [&](const Pipeline& p) {
     if (tiled_)
       c.dispatch_indirect(p, "arguments");

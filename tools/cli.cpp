@@ -180,6 +180,12 @@ void add_device_options(CLI::App& command, DeviceFlags& flags) {
           "--device", flags.part,
           "part of the device's name, any case (default: a GPU, else lavapipe; see 'gnomon list devices')")
       ->type_name("PART");
+  command
+      .add_option("--memory", flags.memory,
+                  "limit of what a technique's shadow maps take at a time, as 512MB or 2GB; further maps wait their turn")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::Range(uint64_t{1} << 20, uint64_t{1} << 40))
+      ->default_str("1GB");
   command.add_flag("--validation", flags.validation,
                    "Vulkan validation and synchronisation validation; a message makes the exit status 1");
 }

@@ -59,6 +59,7 @@ std::shared_ptr<const Scene> open_scene(const std::string& name_or_file);
 struct DeviceFlags {
   std::string part;
   bool validation = false;
+  uint64_t memory = uint64_t{1} << 30;  // bytes: RenderSettings::memory
 };
 void add_device_options(CLI::App& command, DeviceFlags& flags);
 std::shared_ptr<Device> open_device(const DeviceFlags& flags);

@@ -64,6 +64,7 @@ int bench_command(const Options& options) {
   const auto [shard, shards] = parse_shard(options.shard);
   Suite suite = load_suite(find_suite(options.suite));
   if (options.repeat > 0) suite.repeat = options.repeat;
+  suite.memory = options.device.memory;
   for (const std::string& notice : suite.notices) fmt::print(stderr, "gnomon: note: {}\n", notice);
 
   BenchOptions bench;

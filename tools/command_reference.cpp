@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 
 #include "bench/progress.h"
+#include "engine/animation.h"
 #include "engine/error.h"
 #include "engine/image.h"
 #include "engine/reference.h"
@@ -19,6 +21,7 @@ struct Options {
   std::string scene, size = "1280x720";
   std::filesystem::path out;
   uint32_t samples = 0, camera = 0;
+  double time = 0;
 };
 
 void reference_command(const Options& options) {
@@ -32,7 +35,9 @@ void reference_command(const Options& options) {
     fail("the file's name must end in .exr", options.out.string(), "--out");
   if (options.samples > max_samples)
     fail(fmt::format("{} samples: at most {}", options.samples, max_samples), {}, "--samples");
-  const auto scene = open_scene(options.scene);
+  if (!std::isfinite(options.time)) fail("the time is not a finite number", {}, "--time");
+  auto scene = open_scene(options.scene);
+  if (scene->animation) scene = std::make_shared<const Scene>(posed(*scene, options.time));
   camera_of(*scene, options.camera);
   Progress progress("reference " + scene->name, 5);
   settings.progress = [&](double share) { progress.update(share); };
@@ -63,6 +68,12 @@ void add_reference(CLI::App& app, int& status) {
       ->capture_default_str();
   command->add_option("--camera", options->camera, "index of the scene's camera")
       ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--time", options->time,
+          "seconds of the scene's animations; before the first and after the last key frame nothing moves")
+      ->type_name("S")
       ->capture_default_str();
   command->footer(
       R"(Channels: Y, light1.Y, ... visibility (0 umbra, 1 lit); domain, light1.domain, ... 0 where the

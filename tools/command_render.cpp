@@ -10,7 +10,9 @@
 #include "bench/progress.h"
 #include "bench/rounds.h"
 #include "bench/run_json.h"
+#include "bench/sequence.h"
 #include "bench/truth.h"
+#include "engine/animation.h"
 #include "engine/config.h"
 #include "engine/error.h"
 #include "engine/image.h"
@@ -29,8 +31,9 @@ struct Options {
   std::vector<std::string> set, capture;
   fs::path out, json_file;
   DeviceFlags device;
-  uint32_t camera = 0, repeat = 5, warmup = 2;
-  bool no_alias = false, keep_all = false, error = false;
+  uint32_t camera = 0, repeat = 5, warmup = 2, frames = 0;
+  double fps = 30;
+  bool no_alias = false, keep_all = false, error = false, write_frames = false;
 };
 
 struct Capture {
@@ -72,6 +75,8 @@ struct Job {  // everything the options say, checked
   RenderSettings settings;
   std::vector<Capture> captures;
   std::optional<uint32_t> samples;
+  uint32_t frames = 0;  // of a sequence; 0: none
+  bool write_frames = false;
 };
 
 Job prepare(const Options& options) {
@@ -83,11 +88,19 @@ Job prepare(const Options& options) {
   job.settings.reversed_z = parse_camera_z(options.camera_z);
   job.settings.alias = !options.no_alias;
   job.settings.keep_all = options.keep_all;
+  job.settings.memory = options.device.memory;
   job.captures = parse_captures(options.capture);
   for (const Capture& capture : job.captures) job.settings.captures.push_back(capture.port);
   job.samples = reference_samples(options);
   const Values set = parse_set(options.set);
   if (options.repeat < 1) fail("at least one frame is measured", {}, "--repeat");
+  if (!(options.fps > 0 && options.fps <= 1e6))
+    fail(fmt::format("{} frames a second: must be above 0 and at most 1e6", options.fps), {}, "--fps");
+  if (options.write_frames && options.frames == 0)
+    fail("there are no frames to write", {}, "--write-frames", "--frames N renders a sequence");
+  job.settings.frame_seconds = 1.0 / options.fps;
+  job.frames = options.frames;
+  job.write_frames = options.write_frames;
   const fs::path file = find_scene(options.scene);
   job.graph = load_graph(find_graph(options.graph), set);
   job.scene = open_scene(file.string());
@@ -144,6 +157,17 @@ void print_error(const json& error) {
              error.value("rmse", 0.0));
 }
 
+void print_sequence(const json& sequence) {
+  const auto spread = [&](const char* name) {
+    const json& s = sequence[name];
+    return s.is_object() && s["mean"].is_number()
+               ? fmt::format("{:.4f} (largest {:.4f})", s["mean"].get<double>(), s["max"].get<double>())
+               : std::string("-");
+  };
+  fmt::print("  {} frames: mean RMSE {}, mean flicker {}\n", sequence["frames"].get<size_t>(), spread("rmse"),
+             spread("flicker"));
+}
+
 void print_run(const Job& job, const json& run) {
   const json& frame = run["frame_ms"];
   fmt::print("{} on {}, {}x{}, {}\n", job.graph.name, job.scene->name, job.settings.width,
@@ -155,26 +179,104 @@ void print_run(const Job& job, const json& run) {
   for (const json& pass : run["left_out"])
     fmt::print("  left out: {}: {}\n", pass["pass"].get<std::string>(), pass["reason"].get<std::string>());
   print_error(run["error"]);
+  if (run.contains("sequence")) print_sequence(run["sequence"]);
 }
 
-std::string error_of(const Job& job, const Images& images) {
-  Progress progress("reference " + job.scene->name);
+ReferenceSettings reference_settings(const Job& job) {
   ReferenceSettings settings;
   settings.width = job.settings.width;
   settings.height = job.settings.height;
   settings.samples = *job.samples;
   settings.camera = job.settings.camera;
+  return settings;
+}
+
+// `seconds`: of the scene's time that the images show.
+std::string error_of(const Job& job, const Images& images, double seconds) {
+  Progress progress("reference " + job.scene->name);
+  ReferenceSettings settings = reference_settings(job);
   settings.progress = [&](double share) { progress.update(share); };
   const bool finite_color = images.color && count_nonfinite(*images.color) == 0;
-  return Truth(job.scene, settings, cache_folder())
+  const auto scene =
+      job.scene->animation ? std::make_shared<const Scene>(posed(*job.scene, seconds)) : job.scene;
+  return Truth(scene, settings, cache_folder())
       .error_json(images.visibility, finite_color ? &*images.color : nullptr, job.graph.vars);
+}
+
+// Reads, measures and writes the frames of a sequence as they are shown.
+class FrameReader {
+ public:
+  FrameReader(const Job& job, Renderer& renderer, OutputFolder& folder)
+      : job_(job), renderer_(renderer), folder_(folder), progress_("frames " + job.scene->name) {
+    if (job.samples)
+      truth_.emplace(job.scene, reference_settings(job), cache_folder(), job.settings.frame_seconds);
+  }
+
+  void read(uint32_t index, double frame_ms) {
+    const bool last = index + 1 == job_.frames;
+    images = last ? read_images(renderer_, job_) : frame_images();
+    nonfinite += count_nonfinite(images.visibility) + (images.color ? count_nonfinite(*images.color) : 0);
+    if (job_.write_frames) write(index);
+    if (truth_)
+      result.add(truth_->at(index), frame_ms, images.visibility);
+    else
+      result.add(renderer_.seconds(), frame_ms);
+    progress_.update(double(index + 1) / job_.frames);
+  }
+
+  SequenceResult result;
+  Images images;  // of the last frame
+  uint64_t nonfinite = 0;
+
+ private:
+  Images frame_images() const {
+    Images frame;
+    frame.visibility = renderer_.read("visibility");
+    if (job_.write_frames && job_.graph.outputs.count("color") != 0) frame.color = renderer_.read("color");
+    return frame;
+  }
+
+  void write(uint32_t index) {
+    const std::string name = fmt::format("frame_{:04}_", index);
+    write_exr(folder_.file(name + "visibility.exr"), images.visibility);
+    if (images.color) write_png_srgb(folder_.file(name + "color.png"), rgb_of(*images.color));
+  }
+
+  const Job& job_;
+  Renderer& renderer_;
+  OutputFolder& folder_;
+  Progress progress_;
+  std::optional<SequenceTruth> truth_;
+};
+
+// Runs the frames; what the last one that was measured without time stamps shows.
+Images measure(const Job& job, const Options& options, Renderer& renderer, OutputFolder& folder, Row& row) {
+  const auto subject = subject_of(renderer);
+  RoundSettings rounds{options.warmup, options.repeat, options.repeat};
+  rounds.sequence = job.frames > 0;
+  std::optional<FrameReader> frames;
+  FrameHook hook;
+  if (rounds.sequence) {
+    rounds.repeat = job.frames;
+    frames.emplace(job, renderer, folder);
+    hook = [&](size_t, uint32_t index, const FrameTiming& timing) { frames->read(index, timing.frame_ms); };
+  }
+  row.samples = run_rounds({subject.get()}, rounds, {}, hook).front();
+  if (!row.samples.error.empty()) fail(row.samples.error, options.graph);
+  if (frames) {
+    row.nonfinite = frames->nonfinite;
+    row.sequence = std::move(frames->result);
+    return std::move(frames->images);
+  }
+  Images images = read_images(renderer, job);
+  row.nonfinite = count_nonfinite(images.visibility) + (images.color ? count_nonfinite(*images.color) : 0);
+  return images;
 }
 
 int render_command(const Options& options) {
   const Job job = prepare(options);
   const auto device = open_device(options.device);
   Renderer renderer(device, job.scene, job.graph, job.settings);
-  const auto subject = subject_of(renderer);
   Row row;
   describe_graph(row, job.graph);
   row.scene = fs::weakly_canonical(job.scene->file);
@@ -184,24 +286,23 @@ int render_command(const Options& options) {
   row.reversed_z = job.settings.reversed_z;
   row.alias = job.settings.alias;
   row.keep_all = job.settings.keep_all;
+  row.memory_limit = job.settings.memory;
   row.device = device_info(*device);
-  row.samples = run_rounds({subject.get()}, {options.warmup, options.repeat, options.repeat}).front();
-  if (!row.samples.error.empty()) fail(row.samples.error, options.graph);
-  const Images images = read_images(renderer, job);
+  const fs::path out =
+      options.out.empty() ? fs::path("out") / (job.scene->name + "-" + job.graph.name) : options.out;
+  OutputFolder folder(out);
+  const Images images = measure(job, options, renderer, folder, row);
   describe_renderer(row, renderer);
   for (const std::string& warning : row.warnings) warn(warning);
-  row.nonfinite = count_nonfinite(images.visibility) + (images.color ? count_nonfinite(*images.color) : 0);
   if (job.samples) {
     row.reference_samples = *job.samples;
-    row.error_json = error_of(job, images);
+    row.error_json =
+        error_of(job, images, job.frames > 0 ? (job.frames - 1) * job.settings.frame_seconds : 0.0);
   }
   if (row.nonfinite > 0)
     row.status = fmt::format("error: {} values of the output are not finite", row.nonfinite);
   const json run = to_json(row);
 
-  const fs::path out =
-      options.out.empty() ? fs::path("out") / (job.scene->name + "-" + job.graph.name) : options.out;
-  OutputFolder folder(out);
   write_images(folder, images);
   write_text(folder.file("run.json"), run.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   for (const auto& [file, image] : images.captured) write_exr(file, image);
@@ -248,6 +349,16 @@ void add_options(CLI::App& command, Options& o) {
       ->type_name("N")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
+  command
+      .add_option("--frames", o.frames,
+                  "render N frames in order from the scene's time 0, each with its own error and flicker")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--fps", o.fps, "frames of --frames to a second of the scene's time")
+      ->type_name("F")
+      ->capture_default_str();
+  command.add_flag("--write-frames", o.write_frames,
+                   "also write frame_0000_visibility.exr and frame_0000_color.png, ... to the folder");
   command.add_flag("--error", o.error, "measure the error against the ray-traced hard shadows");
   command
       .add_option(
@@ -268,10 +379,13 @@ void add_render(CLI::App& app, int& status) {
   add_options(*command, *options);
   command->footer(
       R"(Writes color.png (sRGB), color.exr (linear), visibility.exr (channel Y: 0 umbra, 1 lit; light1.Y, ... for
-further lights; row 0 at the top) and run.json (docs/reading-the-report.md). Times are milliseconds.
+further lights; row 0 at the top) and run.json (docs/reading-the-report.md). Times are milliseconds. Of a sequence
+(--frames) the images and run.json's "error" are those of the last frame, "frames" holds each one's; the warm-up frames
+stand at time 0 and are forgotten before the sequence begins.
 
 Examples:
   gnomon render fence --graph shadow_mapping
+  gnomon render pendulum --graph pcf --frames 60 --reference 0 --write-frames --out out/swing
   gnomon render robot.glb --graph rbsm_conservative --set shadow_map=512 --error --out out/robot
   gnomon render fence -g shadow_mapping --capture map.depth=map.exr --device lavapipe)");
   command->callback([options, &status] { status = render_command(*options); });

@@ -16,6 +16,8 @@ struct Entry {
 };
 
 constexpr Entry entries[] = {
+    {"area_shapes", "A square blocker above a plane under five area lights, one of each shape.",
+     generate::area_shapes_scene},
     {"colonnade",
      "An arcade of columns and arches under a barrel vault, seen from within, lit low from outside.",
      generate::colonnade},
@@ -28,6 +30,11 @@ constexpr Entry entries[] = {
      generate::hills},
     {"lattice", "A perforated vault and a perforated ring: fine, holed and curved casters.",
      generate::lattice},
+    {"moving_light", "A spot light that circles above a sphere and a post for two seconds.",
+     generate::moving_light},
+    {"pendulum",
+     "A swinging bob above a plane, with a post that stands still; the second camera swings too (2 s).",
+     generate::pendulum},
     {"robot", "A figure of boxes at many angles among tumbled crates.", generate::robot},
     {"sphere_plane", "A finely tessellated sphere above a plane, with a closed-form shadow.",
      generate::sphere_plane_scene},

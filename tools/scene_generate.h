@@ -22,7 +22,7 @@ void generate_scene(const std::string& name, const std::filesystem::path& out_di
 // The bytes that generate_scene() writes.
 std::string scene_bytes(const std::string& name);
 
-// Exact measures of the analytic scenes, world units; the ground is the plane y = 0 in both. All light
+// Exact measures of the analytic scenes, world units; the ground is the plane y = 0 in all. All light
 // sources face straight down, their local x is the world's x, their local y the world's -z.
 namespace sphere_plane {
 constexpr double sphere_radius = 1.5;
@@ -45,5 +45,21 @@ constexpr double light_height = 8.0;
 constexpr double light_side = 0.32;
 constexpr double ground_half = 5.5;
 }  // namespace square_plane
+
+// The blocker of square_plane under five area lights, in this order: a rectangle, a disc, a sphere, a polygon
+// (an arrow head, not convex) and a window: a rectangle whose emission is a texture, nearest, of which the
+// panes of one diagonal are black.
+namespace area_shapes {
+constexpr double blocker_half = 1.0;
+constexpr double blocker_height = 2.0;
+constexpr double light_height = 8.0;
+constexpr double lights[5][2] = {{-1.5, -1.5}, {1.5, -1.5}, {0.0, 0.0}, {-1.5, 1.5}, {1.5, 1.5}};  // x, z
+constexpr double rectangle_width = 1.6, rectangle_height = 0.8;
+constexpr double disc_radius = 0.6, sphere_radius = 0.6;
+constexpr double polygon[4][2] = {{-0.75, -0.5}, {0.0, -0.25}, {0.75, -0.5}, {0.0, 0.75}};
+constexpr double window_side = 1.2;
+constexpr int window_panes = 2;  // a side
+constexpr double ground_half = 5.5;
+}  // namespace area_shapes
 
 }  // namespace gnomon

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "engine/animation.h"
+
 namespace gnomon {
 namespace {
 
@@ -53,6 +55,24 @@ const char* name_of(LightType type) {
   return "";
 }
 
+std::string text(const AreaLight& area, const Scene& scene) {
+  switch (area.shape) {
+    case AreaLight::Shape::rectangle:
+      break;
+    case AreaLight::Shape::disc:
+      return fmt::format("disc of radius {:.6g}", 0.5 * area.width);
+    case AreaLight::Shape::sphere:
+      return fmt::format("sphere of radius {:.6g}", 0.5 * area.width);
+    case AreaLight::Shape::polygon:
+      return fmt::format("polygon of {} corners in {:.6g} x {:.6g}", area.outline.size(), area.width,
+                         area.height);
+  }
+  std::string result = fmt::format("rectangle {:.6g} x {:.6g}", area.width, area.height);
+  if (!area.emission) return result;
+  const Texture& texture = scene.textures[*area.emission];
+  return result + fmt::format(" with emission texture {} {}x{}", texture.name, texture.width, texture.height);
+}
+
 void describe_lights(const Scene& scene, Out out) {
   fmt::format_to(out, "lights: {}\n", scene.lights.size());
   for (const Light& light : scene.lights) {
@@ -65,7 +85,7 @@ void describe_lights(const Scene& scene, Out out) {
     if (light.type == LightType::spot)
       fmt::format_to(out, ", cone {:.4g} to {:.4g} degrees, map {:.4g} degrees", degrees(light.inner_cone),
                      degrees(light.outer_cone), degrees(light.map_fov));
-    if (light.area) fmt::format_to(out, ", area {:.6g} x {:.6g}", light.area->width, light.area->height);
+    if (light.area) fmt::format_to(out, ", area: {}", text(*light.area, scene));
     fmt::format_to(out, "\n");
   }
 }
@@ -79,6 +99,13 @@ void describe_cameras(const Scene& scene, Out out) {
     if (camera.aspect) fmt::format_to(out, ", aspect {:.4g}", *camera.aspect);
     fmt::format_to(out, "\n");
   }
+}
+
+void describe_animation(const Scene& scene, Out out) {
+  if (!scene.animation) return;
+  const Animation& moving = *scene.animation;
+  fmt::format_to(out, "animation: {:.4g} s, moves {} instances, {} cameras, {} lights\n", duration(moving),
+                 moving.instances.size(), moving.cameras.size(), moving.lights.size());
 }
 
 void describe_warnings(const SceneWarnings& warnings, Out out) {
@@ -103,6 +130,7 @@ std::string describe_scene(const Scene& scene) {
   describe_materials(scene, out);
   describe_lights(scene, out);
   describe_cameras(scene, out);
+  describe_animation(scene, out);
   describe_warnings(scene.warnings, out);
   return result;
 }

@@ -6,6 +6,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+const uint PART_NO_CASTERS = 1u;  // push.part.y: there are no maps, for nothing casts a shadow of this light
+
 bool sample_lit(AreaReceiver receiver, Receiver plane, int layer, out bool edge) {
   ivec2 texel = ivec2(floor(plane.texel));
 #if TEST == TEST_PCF
@@ -27,6 +29,7 @@ void main() {
   AreaReceiver receiver;
   int state = make_area_receiver(at, receiver);
   if (state == PIXEL_OTHERS) return;
+  if (state == PIXEL_INSIDE && push.part.y == PART_NO_CASTERS) state = PIXEL_OUTSIDE;
   uint lit = 0u, edges = 0u;
   uint count = state == PIXEL_INSIDE ? push.count : 0u;
   for (uint i = 0u; i < count; ++i) {

@@ -11,6 +11,7 @@ void main() {
   AreaReceiver receiver;
   int state = make_area_receiver(at, receiver);
   if (state == PIXEL_OTHERS) return;
+  if (state == PIXEL_INSIDE && push.count == 0u) state = PIXEL_OUTSIDE;  // nothing casts a shadow there
   ivec3 place = ivec3(at, push.light);
   float sum = (push.part.x & PART_FIRST) != 0u ? 0.0 : imageLoad(visibility, place).x;
   uint count = state == PIXEL_INSIDE ? push.count : 0u;

@@ -8,11 +8,11 @@ shared uint receives[LINES * EDGE_WORDS];  // a bit a place
 
 const float SIGMAS = 2.0;  // of the Gaussian, in half a window
 
-void load_part(ivec2 origin, int light, int reach, int places) {
-  for (int place = part(); place < places; place += PARTS) {
-    ivec2 pixel = pixel_of(origin, reach, place);
-    Receiving here = receiving_at(pixel, light);
-    values[place * LINES + line()] = source_at(pixel, light);
+void load_part(Strip strip) {
+  for (int place = part(); place < strip.places; place += PARTS) {
+    ivec2 pixel = pixel_of(strip, place);
+    Receiving here = surface_at(pixel, strip.light, is_own(strip, place));
+    values[place * LINES + line()] = source_at(pixel, strip.light);
     positions[place * LINES + line()] = here.position;
     if (here.receives) atomicOr(receives[line() * EDGE_WORDS + place / BITS], 1u << uint(place % BITS));
   }
@@ -28,6 +28,7 @@ float bilateral(int place, Receiving centre) {
     float off = dot(centre.normal, positions[tap * LINES + line()] - centre.position) / range;
     float along = float(i) / sigma, inside = clamp(width + 1.0 - abs(float(i)), 0.0, 1.0);
     float weight = i == 0 ? 1.0 : counts ? inside * exp(-0.5 * (along * along + off * off)) : 0.0;
+    if (weight == 0.0) continue;  // what does not count may not even be a number
     sum += weight * values[tap * LINES + line()];
     weights += weight;
   }
@@ -35,19 +36,16 @@ float bilateral(int place, Receiving centre) {
 }
 
 void main() {
-  ivec2 origin;
-  int light;
-  bool listed = strip_at(origin, light);
-  int reach = int(control[REACH]), places = listed ? LENGTH + 2 * reach + 2 : 0;
+  Strip strip = strip_of_workgroup();
   for (int i = int(gl_LocalInvocationIndex); i < LINES * EDGE_WORDS; i += LINES * PARTS) receives[i] = 0u;
   barrier();
-  load_part(origin, light, reach, places);
+  load_part(strip);
   barrier();
-  int first = reach + 1 + part() * CELL;
-  for (int place = first; place < first + (listed ? CELL : 0); ++place) {
-    ivec2 pixel = pixel_of(origin, reach, place);
-    Receiving here = receiving_at(pixel, light);
+  int cell = part(), first = strip.reach + 1 + cell * CELL;
+  for (int place = first; place < first + (is_needed(strip, cell) ? CELL : 0); ++place) {
+    ivec2 pixel = pixel_of(strip, place);
+    Receiving here = surface_at(pixel, strip.light, false);
     float v = here.receives ? bilateral(place, here) : values[place * LINES + line()];
-    store(pixel, light, v);
+    store(pixel, strip.light, v);
   }
 }

@@ -5,9 +5,8 @@
 // receiver is seen at an angle the silhouette's nearest point in the world is another one, so the silhouette is followed there
 // along its image-space tangent, which the nearest pixel gives: it stands at right angles to the way there. Pixels beside the
 // silhouette lie half a pixel and more away from it, which is added.
-#include "frame.glsl"
+#include "receiving.glsl"
 #include "lib/distance_transform.glsl"
-#include "lib/octahedral.glsl"
 #include "lib/same_surface.glsl"
 #include "lib/tiles.glsl"
 
@@ -23,24 +22,10 @@ const float OUTERMOST = 0.2;       // pixels that the outermost of some pixels b
 const float OBLIQUE = 0.15;        // |x| + |y| - 1 from which a direction is oblique: ten degrees
 const float BESIDE_SITE = 0.25;    // pixels between a silhouette pixel's centre and the silhouette: the mean over both sides
 
-struct Point {
-  vec3 position, normal;  // relative; geometric
-  bool receives;          // geometry that faces the light: the shadow map decides
-};
-
-Point point_at(ivec2 pixel, int light) {
-  float device_depth = depth_at(pixel).x;
-  Point p;
-  p.position = relative_position(pixel, device_depth);
-  p.normal = octahedral_decode(geometric_at(pixel).xy);
-  p.receives = !is_background(device_depth) && faces_light(lights[light], p.position, p.normal);
-  return p;
-}
-
-float point_depth(vec3 p) { return -(frame.view_from_relative * vec4(p, 1.0)).z; }
-
-bool related(Point p, vec3 q) {
-  return same_surface(p.position, p.normal, q, point_depth(p.position), params.depth_tolerance, params.bend);
+bool related(Receiving p, vec3 q) {
+  // p.depth is the same; but lavapipe 22.3 crashes on this shader unless it reads view_from_relative.
+  float depth = -(frame.view_from_relative * vec4(p.position, 1.0)).z;
+  return same_surface(p.position, p.normal, q, depth, params.depth_tolerance, params.bend);
 }
 
 // How far the nearest silhouette pixel's centre lies from the silhouette, in pixels along the unit direction `way`. The 3x3 test
@@ -58,8 +43,8 @@ float line_distance(vec3 p, vec3 a, vec3 b) {
 }
 
 // World distance of `p` to the silhouette, of which `site` is the pixel nearest to `pixel`; negative: not on this surface.
-float world_distance(ivec2 pixel, Point p, ivec2 site, int light) {
-  Point s = point_at(site, light);
+float world_distance(ivec2 pixel, Receiving p, ivec2 site, int light) {
+  Receiving s = receiving_at(site, light);
   if (!related(p, s.position)) return -1.0;
   if (site == pixel) return BESIDE_SITE * length(plane_position(p.position, p.normal, vec2(pixel) + vec2(1.0, 0.5)) -
                                                  plane_position(p.position, p.normal, vec2(pixel) + vec2(0.0, 0.5)));
@@ -73,7 +58,7 @@ float world_distance(ivec2 pixel, Point p, ivec2 site, int light) {
   ivec2 last = textureSize(nearest, 0).xy - 1, other;
   ivec2 this_side = clamp(ivec2(floor(place - OWN_SIDE * way)), ivec2(0), last);
   if (!unpack_site(nearest_at(this_side, light).x, other)) return nearest_distance;
-  Point o = point_at(other, light);
+  Receiving o = receiving_at(other, light);
   if (!related(p, o.position)) return nearest_distance;
   vec3 other_edge = plane_position(o.position, o.normal, vec2(other) + to_edge);
   float baseline = distance(vec2(other), vec2(site));
@@ -93,7 +78,7 @@ void main() {
   if (any(greaterThanEqual(pixel, imageSize(visibility).xy))) return;
   ivec2 site;
   if (!unpack_site(nearest_at(pixel, tile.layer).x, site)) return;
-  Point p = point_at(pixel, tile.layer);
+  Receiving p = receiving_at(pixel, tile.layer);
   if (!p.receives) return;
   bool lit = imageLoad(visibility, ivec3(pixel, tile.layer)).x >= 0.5;
 #if METRIC == METRIC_WORLD
@@ -101,7 +86,7 @@ void main() {
 #else
   // As in fig. 6 of the 2017 paper.
   vec2 way = vec2(site - pixel);
-  bool here = related(p, point_at(site, tile.layer).position);
+  bool here = related(p, receiving_at(site, tile.layer).position);
   float d = !here ? -1.0 : (length(way) + (site == pixel ? BESIDE_SITE : beside(normalize(way)))) / params.pixels;
 #endif
   if (d >= 0.0) imageStore(visibility, ivec3(pixel, tile.layer), vec4(penumbra(lit, d)));

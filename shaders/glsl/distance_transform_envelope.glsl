@@ -1,7 +1,8 @@
 // Proximate sites of each row and colouring (Cao et al. 2010, phases 2 and 3). The nearest site of a row's pixel is that of one of
-// the columns in which phase 1 found the nearest: a lower envelope of parabolas, kept as a stack of those sites that are nearest
-// somewhere on the row. The stack is in memory where the result of the same row will be, which is filled from its end and so never
-// overtakes what is still needed. An invocation has a row, because neighbouring rows share the words of bits.
+// the columns that distance_transform_prune kept, in which phase 1 found the nearest: a lower envelope of parabolas, kept as a
+// stack of those sites that are nearest somewhere on the row. The stack is in memory where the result of the same row will be,
+// which is filled from its end and so never overtakes what is still needed. An invocation has a row, because neighbouring rows
+// share the words of bits.
 //
 // A row is swept in bands of columns, one dispatch each, and coloured in bands from its end: software devices stop loops after some
 // 65000 turns of an invocation. Only the number of entries goes from one band to the next; the rest follows from the stack.
@@ -77,27 +78,31 @@ void resume(int entries) {
 }
 
 void find_proximate(int word, int layer) {
-  for (int x = stripe.begin; x < stripe.end;) {
-    Entry e;
-    int start;
-    bool pops, pops_anywhere;
-    do {
-      int row = nearest_in_column(imageLoad(words, ivec3(x, word, layer)).xy, word * WORD, y);
-      e = make_entry(ivec2(x, row));
-      start = count > 0 ? start_of(top, e) : 0;
-      bool is_site = is_row(row);
-      pops = is_site && count > 0 && start <= top_start;
-      if (is_site && !pops && start < row_length) push(e, start);
-      ++x;
-      pops_anywhere = subgroupAny(pops);
-    } while (!pops_anywhere && x < stripe.end);
-    bool popped = pops;
-    while (pops) {
-      pop();
-      start = count > 0 ? start_of(top, e) : 0;
-      pops = count > 0 && start <= top_start;
+  for (int chunk = stripe.begin; chunk < stripe.end; chunk += CHUNK) {
+    uint columns = imageLoad(kept, ivec3(chunk / CHUNK, word, layer)).x;
+    while (columns != 0u) {
+      Entry e;
+      int start;
+      bool pops, pops_anywhere;
+      do {
+        int x = chunk + findLSB(columns);
+        columns &= columns - 1u;
+        int row = nearest_in_column(imageLoad(words, ivec3(x, word, layer)).xy, word * WORD, y);
+        e = make_entry(ivec2(x, row));
+        start = count > 0 ? start_of(top, e) : 0;
+        bool is_site = is_row(row);
+        pops = is_site && count > 0 && start <= top_start;
+        if (is_site && !pops && start < row_length) push(e, start);
+        pops_anywhere = subgroupAny(pops);
+      } while (!pops_anywhere && columns != 0u);
+      bool popped = pops;
+      while (pops) {
+        pop();
+        start = count > 0 ? start_of(top, e) : 0;
+        pops = count > 0 && start <= top_start;
+      }
+      if (popped && start < row_length) push(e, start);
     }
-    if (popped && start < row_length) push(e, start);
   }
 }
 

@@ -1,9 +1,10 @@
 // The radius of bounded_exact in this frame, pixels. Squares of radii up to that of the largest image fit 32 bits.
 const int MOST_PIXELS = 23170;  // diagonal of 16384 x 16384
 int frame_radius() {
+  int least = max(params.radius, int(ceil(0.5 * params.pixels)));
 #if REACHING
-  return clamp(int(reached[0]), params.radius, MOST_PIXELS);
+  return clamp(int(reached[0]), least, MOST_PIXELS);
 #else
-  return params.radius;
+  return least;
 #endif
 }

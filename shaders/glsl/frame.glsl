@@ -12,6 +12,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
   vec4 viewport;    // width, height, 1/width, 1/height
   vec4 depth;       // near plane, 1 when reversed z
   uvec4 counts;     // lights, faces, frame index
+  mat4 previous_clip_from_relative;  // the previous frame's camera; positions relative to this frame's eye
 } frame;
 
 struct Light {
@@ -29,7 +30,7 @@ struct Light {
 struct Instance {
   mat4 relative_from_object;
   vec4 normal_columns[3];
-  uvec4 info;       // first triangle, material, 1 when mirrored
+  uvec4 info;       // first triangle, material, 1 when mirrored, 1 when some animation moves it
 };
 struct Material {
   vec4 base_color;
@@ -66,6 +67,13 @@ vec3 plane_position(vec3 p, vec3 n, vec2 place) {
 vec2 image_place(vec3 p) {
   vec4 clip = frame.clip_from_relative * vec4(p, 1.0);
   return (0.5 + 0.5 * clip.xy / clip.w) * frame.viewport.xy;
+}
+
+// Where the previous frame showed a relative position that stands still: xy its place in that image, in pixels; z its
+// view depth there, not above 0 behind that camera.
+vec3 previous_image_place(vec3 p) {
+  vec4 clip = frame.previous_clip_from_relative * vec4(p, 1.0);
+  return vec3((0.5 + 0.5 * clip.xy / clip.w) * frame.viewport.xy, clip.w);
 }
 
 // Unit vector from `p` to the light, and the distance (infinite for directional lights).

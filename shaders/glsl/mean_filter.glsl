@@ -5,43 +5,72 @@
 // Sums are integers, which add up exactly in any order and may wrap: 2^24 a unit of visibility is the precision of its float.
 const float UNIT = 16777216.0;
 
-shared uint sums[SPAN * LINES];    // of a part of a line, up to and including each place
-shared uint totals[PARTS * LINES]; // of the whole parts
-
 const int PART = SPAN / PARTS;  // places of a part: a power of two
 
-void sum_part(ivec2 origin, int light, int reach, int places) {
-  int first = part() * PART;
-  Receiving before = receiving_at(pixel_of(origin, reach, first - 1), light);
-  uint sum = 0u;
-  for (int place = first; place < min(first + PART, places); ++place) {
-    ivec2 pixel = pixel_of(origin, reach, place);
-    Receiving here = receiving_at(pixel, light);
-    if (edge_between(before, here)) set_edge(place);
-    sum += uint(source_at(pixel, light) * UNIT + 0.5);
+shared uint sums[SPAN * LINES];     // of a part of a line, up to and including each place
+shared uint totals[PARTS * LINES];  // of the whole parts
+shared float depths[SPAN * LINES];  // along the view axis
+
+// What an invocation reads of its line again and again.
+uint before_part[PARTS];  // sum of the parts before each
+uint edge_window[4];      // words of edges, from the one before that of the first place on
+
+void sum_part(Strip strip) {
+  int first = part() * PART, end = min(first + PART, strip.places);
+  if (!any_needed(strip, first, end)) end = first;
+  Receiving before = surface_at(pixel_of(strip, first - 1), strip.light, false);
+  uint sum = 0u, found = 0u;
+  for (int place = first; place < end; ++place) {
+    ivec2 pixel = pixel_of(strip, place);
+    Receiving here = surface_at(pixel, strip.light, is_own(strip, place));
+    if (edge_between(before, here)) found |= 1u << place % BITS;
+    sum += uint(source_at(pixel, strip.light) * UNIT + 0.5);
     sums[place * LINES + line()] = sum;
+    depths[place * LINES + line()] = here.depth;
     before = here;
   }
   totals[part() * LINES + line()] = sum;
+  if (end == first) sums[(first + PART - 1) * LINES + line()] = 0u;  // a window may begin right behind it
+  atomicOr(edges[line() * EDGE_WORDS + first / BITS + 1], found);
 }
 
-// Each part's sum becomes that of the parts before it.
-void add_up_totals() {
+// `first`: place of the cell's first pixel.
+void load_line(int first) {
   uint sum = 0u;
   for (int p = 0; p < PARTS; ++p) {
-    uint total = totals[p * LINES + line()];
-    totals[p * LINES + line()] = sum;
-    sum += total;
+    before_part[p] = sum;
+    sum += totals[p * LINES + line()];
   }
+  for (int i = 0; i < 4; ++i) edge_window[i] = edges[line() * EDGE_WORDS + first / BITS + i];
+}
+
+uint before(int p) {
+  uint sum = 0u;
+  for (int i = 1; i < PARTS; ++i)
+    if (i == p) sum = before_part[i];
+  return sum;
 }
 
 // Of all places of the line up to and including `place`, which may be -1.
-uint sum_to(int place) { return place < 0 ? 0u : sums[place * LINES + line()] + totals[place / PART * LINES + line()]; }
+uint sum_to(int place) { return place < 0 ? 0u : sums[place * LINES + line()] + before(place / PART); }
 
-float mean(int place, float half_width) {
-  int whole = int(half_width);
+// The 32 bits of edges that end with that of `place`, which becomes bit 31; `word`: that of the place in edge_window.
+uint edges_up_to(int place, int word) {
+  uint shift = uint(place % BITS);
+  uint low = word == 1 ? edge_window[0] : word == 2 ? edge_window[1] : edge_window[2];
+  uint high = word == 1 ? edge_window[1] : word == 2 ? edge_window[2] : edge_window[3];
+  return high << (31u - shift) | (low >> shift) >> 1;
+}
+
+// `first`: place of the cell's first pixel.
+float mean(int place, int first, float half_width) {
+  int whole = int(half_width), limit = whole + 1;
   float part = half_width - float(whole);
-  int begin = window_begin(place, whole + 1), end = window_end(place, whole + 1);
+  int word = place / BITS - first / BITS + 1;
+  // The window begins at the last edge and ends before the next one; no edge is 32 places away, as far as `limit` at most.
+  int begin = place - min(31 - findMSB(edges_up_to(place, word)), limit);
+  uint ahead = edges_up_to(place + BITS, word + 1);
+  int end = place + min(ahead != 0u ? findLSB(ahead) : BITS, limit);
   int inner_begin = max(begin, place - whole), inner_end = min(end, place + whole);
   float sum = float(sum_to(inner_end) - sum_to(inner_begin - 1));
   float outer = float(sum_to(end) - sum_to(begin - 1)) - sum;
@@ -50,26 +79,18 @@ float mean(int place, float half_width) {
 }
 
 void main() {
-  ivec2 origin;
-  int light;
-  bool listed = strip_at(origin, light);
-  int reach = int(control[REACH]), places = listed ? LENGTH + 2 * reach + 2 : 0;
+  Strip strip = strip_of_workgroup();
   clear_edges();
   barrier();
-  sum_part(origin, light, reach, places);
+  sum_part(strip);
   barrier();
-  if (part() == 0) add_up_totals();
-  barrier();
-  int first = reach + 1 + part() * CELL;
-  bool needed = listed && changes(origin + ALONG * part() * CELL, light);
-  for (int place = first; place < first + (needed ? CELL : 0); ++place) {
-    ivec2 pixel = pixel_of(origin, reach, place);
-    store(pixel, light, mean(place, half_width(receiving_at(pixel, light).depth)));
+  int cell = part(), first = strip.reach + 1 + cell * CELL;
+  bool needed = is_needed(strip, cell), filtered = needed && changes_along(strip, cell);
+  load_line(first);
+  for (int place = first; place < first + (filtered ? CELL : 0); ++place)
+    store(pixel_of(strip, place), strip.light, mean(place, first, half_width(depths[place * LINES + line()])));
+  for (int place = first; place < first + (needed && !filtered ? CELL : 0); ++place) {
+    ivec2 pixel = pixel_of(strip, place);
+    store(pixel, strip.light, source_at(pixel, strip.light));
   }
-#ifndef ALONG_Y_AXIS
-  for (int place = first; place < first + (listed && !needed ? CELL : 0); ++place) {
-    ivec2 pixel = pixel_of(origin, reach, place);
-    store(pixel, light, source_at(pixel, light));
-  }
-#endif
 }

@@ -1,4 +1,5 @@
-// Vertices of the scene for the maps of an area light's samples: one instance a sample, which is also the layer.
+// Vertices of the scene for the maps of an area light's samples: one instance a sample, which is also the layer. SPLIT_MOVING: one
+// sample, whose casters that may move go to a second layer.
 #include "light_samples.glsl"
 
 layout(push_constant) uniform Push { uint instance, material, face, first; } push;
@@ -16,7 +17,11 @@ void main() {
   LightSample s = light_sample(push.first + gl_InstanceIndex);
   vec4 relative = instances[push.instance].relative_from_object * vec4(in_position, 1.0);
   gl_Position = sample_clip(face, s, face_space(face, vec4(relative.xyz, 1.0)) - s.offset);
+#ifdef SPLIT_MOVING
+  gl_Layer = int(instances[push.instance].info.w);
+#else
   gl_Layer = gl_InstanceIndex;
+#endif
 #ifdef MASKED
   out_uv = in_uv;
   out_alpha = in_color.a;

@@ -32,9 +32,8 @@ float bias_world(float texel_size, float slope) {
 #endif
 }
 
-int make_query(ivec2 pixel, out Query query) {
-  float device_depth = depth_at(pixel).x;
-  vec3 n = octahedral_decode(geometric_at(pixel).xy);
+// `n`: geometric normal.
+int make_query(ivec2 pixel, float device_depth, vec3 n, out Query query) {
   vec3 p = relative_position(pixel, device_depth);
   Light light = lights[push.light];
   float light_distance;
@@ -65,6 +64,10 @@ int make_query(ivec2 pixel, out Query query) {
   if (is_background(device_depth)) return PIXEL_BACKGROUND;
   if (facing <= 0.0) return PIXEL_AWAY;
   return seen ? PIXEL_INSIDE : PIXEL_OUTSIDE;
+}
+
+int make_query(ivec2 pixel, out Query query) {
+  return make_query(pixel, depth_at(pixel).x, octahedral_decode(geometric_at(pixel).xy), query);
 }
 
 float map_depth(Query query, ivec2 texel) {

@@ -7,8 +7,7 @@
 //
 // The width is that of (4.4) and (4.5): (4.4) has no unit; here `width` is in pixels at view depth `reference_depth`, and goes
 // with 1 / depth.
-#include "frame.glsl"
-#include "lib/octahedral.glsl"
+#include "receiving.glsl"
 #include "lib/same_surface.glsl"
 #include "lib/tiles.glsl"
 
@@ -19,7 +18,9 @@ const int STRIP = 8;            // cells along a strip; it is one cell wide
 const int LENGTH = STRIP * CELL;
 const int MAX_HALF = 31;        // pixels that a filter reaches to each side at most
 
-const uint CELL_UMBRA = 0u, CELL_LIT = 1u, CELL_MIXED = 2u;
+// What a cell holds, as bits; none: it is as plain as its neighbours are.
+const uint HOLDS_LIGHT = 1u, HOLDS_SHADOW = 2u, HOLDS_BOTH = 3u;
+uint content_of(float visibility) { return (visibility > 0.0 ? HOLDS_LIGHT : 0u) | (visibility < 1.0 ? HOLDS_SHADOW : 0u); }
 
 // Words of `control`: the arguments of the strips along x and along y, and the reach of the widest filter in this frame.
 const int ALONG_X = 0, ALONG_Y = 4, REACH = 8;
@@ -35,27 +36,16 @@ ivec2 cells_of(ivec2 size) { return (size + CELL - 1) / CELL; }
 ivec2 strips_along_x(ivec2 cells) { return ivec2((cells.x + STRIP - 1) / STRIP, cells.y); }
 ivec2 strips_along_y(ivec2 cells) { return ivec2(cells.x, (cells.y + STRIP - 1) / STRIP); }
 
-struct Receiving {
-  vec3 position, normal;
-  float depth;    // along the view axis
-  bool receives;  // geometry in the image that faces the light
-};
+// Cells that the widest filter of the frame, and one pixel more, touches to each side of a cell.
+int cells_around() { return int(control[REACH]) / CELL + 1; }
 
-Receiving receiving_at(ivec2 pixel, int light) {
-  float device_depth = depth_at(clamp(pixel, ivec2(0), image_size() - 1)).x;
-  Receiving r;
-  r.position = relative_position(pixel, device_depth);
-  r.normal = octahedral_decode(geometric_at(clamp(pixel, ivec2(0), image_size() - 1)).xy);
-  r.depth = view_depth(device_depth);
-  bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, image_size()));
-  r.receives = inside && !is_background(device_depth) && faces_light(lights[light], r.position, r.normal);
-  return r;
-}
-
-// Between neighbouring pixels: each may see the other's surface edge-on, so either plane will do.
-bool edge_between(Receiving a, Receiving b) {
-  if (!a.receives || !b.receives) return true;
-  float tolerance = params.depth_tolerance;
-  return !same_surface(a.position, a.normal, b.position, a.depth, tolerance) &&
-         !same_surface(b.position, b.normal, a.position, b.depth, tolerance);
+// Do the cells from `first` to `last` (inclusive, cut off at the image) hold light and shadow both?
+bool changes(ivec2 first, ivec2 last, int light) {
+  ivec2 cells = cells_of(image_size());
+  first = max(first, ivec2(0));
+  last = min(last, cells - 1);
+  uint seen = 0u;
+  for (int y = first.y; y <= last.y; ++y)
+    for (int x = first.x; x <= last.x; ++x) seen |= cell_states[(light * cells.y + y) * cells.x + x];
+  return seen == HOLDS_BOTH;
 }

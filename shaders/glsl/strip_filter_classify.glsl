@@ -8,12 +8,10 @@ void main() {
   ivec2 size = image_size(), cells = cells_of(size), cell = ivec2(gl_GlobalInvocationID.xy);
   int light = int(gl_GlobalInvocationID.z);
   if (any(greaterThanEqual(cell, cells))) return;
-  float least = 1.0, most = 0.0;
+  uint content = 0u;
   for (int i = 0; i < CELL * CELL; ++i) {
     ivec2 pixel = min(cell * CELL + ivec2(i % CELL, i / CELL), size - 1);
-    float v = imageLoad(visibility, ivec3(pixel, light)).x;
-    least = min(least, v);
-    most = max(most, v);
+    content |= content_of(imageLoad(visibility, ivec3(pixel, light)).x);
   }
   float reach = 0.0;
   for (int i = 0; i < CELL * CELL / 4; ++i) {
@@ -22,7 +20,6 @@ void main() {
     for (int k = 0; k < 4; ++k)
       if (!is_background(depths[k])) reach = max(reach, half_width(view_depth(depths[k])));
   }
-  uint state = least == 1.0 ? CELL_LIT : most == 0.0 ? CELL_UMBRA : CELL_MIXED;
-  cell_states[(light * cells.y + cell.y) * cells.x + cell.x] = state;
+  cell_states[(light * cells.y + cell.y) * cells.x + cell.x] = content;
   atomicMax(control[REACH], uint(ceil(reach)));
 }

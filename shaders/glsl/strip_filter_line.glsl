@@ -1,5 +1,7 @@
 // Separable filters: one strip of the image, 64 pixels along the filter's direction and 8 across, with what the filter reaches
 // at both ends. Included by the filters after they are told the direction (ALONG_Y_AXIS).
+//
+// What the pixels show is read from the G-buffer along x only, and kept in `surfaces` for the filter along y.
 #include "strip_filter.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;  // x: line of the strip; y: part of the line
@@ -21,47 +23,65 @@ const ivec2 ALONG = ivec2(1, 0);
 int line() { return int(gl_LocalInvocationID.x); }
 int part() { return int(gl_LocalInvocationID.y); }
 
-// False for workgroups beyond the list's end. `origin`: the strip's first pixel.
-bool strip_at(out ivec2 origin, out int light) {
+struct Strip {
+  ivec2 origin;  // first pixel
+  int light;
+  uint needed;   // cells whose result is needed, a bit each; none beyond the list's end
+  int reach;     // pixels, of the widest filter in the frame
+  int places;    // of a line; they run from `reach` + 1 before the strip to as many behind it
+};
+
+Strip strip_of_workgroup() {
   uint index = tile_index(gl_WorkGroupID);
+  ivec2 cells = cells_of(image_size());
+  Strip strip;
 #ifdef ALONG_Y_AXIS
   bool listed = index < control[ALONG_Y + 3];
-  uint packed = listed ? strips_y[index] : 0u;
+  Tile tile = unpack_tile(listed ? strips_y[index] : 0u);
+  ivec2 at = tile.origin / TILE, strips = strips_along_y(cells);
+  uint needed = needed_y[(tile.layer * strips.y + at.y) * strips.x + at.x];
 #else
   bool listed = index < control[ALONG_X + 3];
-  uint packed = listed ? strips_x[index] : 0u;
+  Tile tile = unpack_tile(listed ? strips_x[index] : 0u);
+  ivec2 at = tile.origin / TILE, strips = strips_along_x(cells);
+  uint needed = needed_x[(tile.layer * strips.y + at.y) * strips.x + at.x];
 #endif
-  ivec2 strip = unpack_tile(packed).origin / TILE;
-  origin = strip * (ALONG * LENGTH + ALONG.yx * CELL);
-  light = unpack_tile(packed).layer;
-  return listed;
+  strip.origin = at * (ALONG * LENGTH + ALONG.yx * CELL);
+  strip.light = tile.layer;
+  strip.needed = listed ? needed : 0u;
+  strip.reach = int(control[REACH]);
+  strip.places = listed ? LENGTH + 2 * strip.reach + 2 : 0;
+  return strip;
 }
 
-// Places run from `reach + 1` before the strip to as many behind it.
-ivec2 pixel_of(ivec2 origin, int reach, int place) { return origin + ALONG * (place - reach - 1) + ALONG.yx * line(); }
+ivec2 pixel_of(Strip strip, int place) { return strip.origin + ALONG * (place - strip.reach - 1) + ALONG.yx * line(); }
+bool is_needed(Strip strip, int cell) { return (strip.needed >> cell & 1u) != 0u; }
 
-// Can the filter change anything in the cell that begins at `corner`? Not where all cells in its reach are alike.
-bool changes(ivec2 corner, int light) {
-  ivec2 cells = cells_of(image_size()), cell = corner / CELL;
-  int around = int(control[REACH]) / CELL + 1;
+// Do needed cells read any of the places from `first` up to but not including `end`? Cell c reads from 8 c on, up to the reach
+// and one more behind it.
+bool any_needed(Strip strip, int first, int end) {
+  int least = max(first - 2 * strip.reach - 2, 0) / CELL, last = min((end - 1) / CELL, STRIP - 1);
+  return (strip.needed & (2u << last) - 1u) >> min(least, STRIP) != 0u;
+}
+
+// Can the filter of this direction change anything in the strip's cell?
+bool changes_along(Strip strip, int cell) {
+  ivec2 at = strip.origin / CELL + ALONG * cell;
 #ifdef ALONG_Y_AXIS
-  ivec2 sides = ivec2(around);
+  return true;  // of those that are needed
 #else
-  ivec2 sides = ivec2(around, 0);
+  ivec2 sides = ALONG * cells_around();
+  return changes(at - sides, at + sides, strip.light);
 #endif
-  ivec2 first = max(cell - sides, ivec2(0)), last = min(cell + sides, cells - 1);
-  uint seen = 0u;  // a bit for each state
-  for (int y = first.y; y <= last.y; ++y)
-    for (int x = first.x; x <= last.x; ++x) seen |= 1u << cell_states[(light * cells.y + y) * cells.x + x];
-  return seen != 1u << CELL_UMBRA && seen != 1u << CELL_LIT;
 }
+
+ivec3 clamped(ivec2 pixel, int light) { return ivec3(clamp(pixel, ivec2(0), image_size() - 1), light); }
 
 float source_at(ivec2 pixel, int light) {
-  ivec3 at = ivec3(clamp(pixel, ivec2(0), image_size() - 1), light);
 #ifdef ALONG_Y_AXIS
-  return imageLoad(rows, at).x;
+  return imageLoad(rows, clamped(pixel, light)).x;
 #else
-  return imageLoad(visibility, at).x;
+  return imageLoad(visibility, clamped(pixel, light)).x;
 #endif
 }
 
@@ -74,26 +94,37 @@ void store(ivec2 pixel, int light, float v) {
 #endif
 }
 
+// What `pixel` shows; beyond the image nothing that receives. Along x, `keep` says that along y it will be asked for again.
+Receiving surface_at(ivec2 pixel, int light, bool keep) {
+  ivec3 at = clamped(pixel, light);
+  bool inside = at.xy == pixel;
+#ifdef ALONG_Y_AXIS
+  uvec2 packed = imageLoad(surfaces, at).xy;
+  Receiving r = make_receiving(at.xy, uintBitsToFloat(packed.x), unpackSnorm2x16(packed.y), light);
+#else
+  float device_depth = depth_at(at.xy).x;
+  vec2 encoded = geometric_at(at.xy).xy;  // of two signed normalised 16-bit numbers: nothing is lost
+  Receiving r = make_receiving(at.xy, device_depth, encoded, light);
+  if (keep && inside) imageStore(surfaces, at, uvec4(floatBitsToUint(device_depth), packSnorm2x16(encoded), 0u, 0u));
+#endif
+  r.receives = r.receives && inside;
+  return r;
+}
+
+// Is a place of a needed cell?
+bool is_own(Strip strip, int place) {
+  int offset = place - strip.reach - 1;
+  return offset >= 0 && offset < LENGTH && is_needed(strip, offset / CELL);
+}
+
+// Between neighbouring pixels: each may see the other's surface edge-on, so either plane will do.
+bool edge_between(Receiving a, Receiving b) {
+  if (!a.receives || !b.receives) return true;
+  float tolerance = params.depth_tolerance;
+  return !same_surface(a.position, a.normal, b.position, a.depth, tolerance) &&
+         !same_surface(b.position, b.normal, a.position, b.depth, tolerance);
+}
+
 void clear_edges() {
   for (int i = int(gl_LocalInvocationIndex); i < LINES * EDGE_WORDS; i += LINES * PARTS) edges[i] = 0u;
-}
-void set_edge(int place) { atomicOr(edges[line() * EDGE_WORDS + place / BITS + 1], 1u << uint(place % BITS)); }
-
-// The 32 bits of the line that end with that of `place`, which becomes bit 31.
-uint edges_up_to(int place) {
-  int word = line() * EDGE_WORDS + place / BITS + 1;
-  uint shift = uint(place % BITS);
-  return edges[word] << (31u - shift) | (edges[word - 1] >> shift) >> 1;
-}
-
-// Where the window of a pixel at `place` begins that reaches `limit` places, at most 32, before it: at the last edge there.
-int window_begin(int place, int limit) {
-  int back = 31 - findMSB(edges_up_to(place));  // 32: no edge
-  return place - min(back, limit);
-}
-// Where the window ends that reaches `limit` places, at most 32, behind it: before the next edge.
-int window_end(int place, int limit) {
-  uint next = edges_up_to(place + BITS);
-  int ahead = next != 0u ? findLSB(next) : BITS;
-  return place + min(ahead, limit);
 }

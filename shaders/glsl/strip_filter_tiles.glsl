@@ -1,5 +1,5 @@
-// Separable filters: the cells that are told to hold penumbra, and how far the widest filter among them reaches. One workgroup
-// a tile.
+// Separable filters: what the cells of the tiles hold outside of which visibility is plain, and how far the widest filter among
+// them reaches. One workgroup a tile.
 #include "strip_filter.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;  // four pixels an invocation
@@ -10,7 +10,12 @@ void main() {
   Tile tile = unpack_tile(tiles[index]);
   ivec2 size = image_size(), cells = cells_of(size), corner = tile.origin + 2 * ivec2(gl_LocalInvocationID.xy);
   if (any(greaterThanEqual(corner, size))) return;
-  cell_states[(tile.layer * cells.y + corner.y / CELL) * cells.x + corner.x / CELL] = CELL_MIXED;
+  uint content = 0u;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 pixel = min(corner + ivec2(i % 2, i / 2), size - 1);
+    content |= content_of(imageLoad(visibility, ivec3(pixel, tile.layer)).x);
+  }
+  atomicOr(cell_states[(tile.layer * cells.y + corner.y / CELL) * cells.x + corner.x / CELL], content);
   vec4 depths = textureGather(depth, vec2(min(corner + 1, size - 1)) / vec2(size));
   float reach = 0.0;
   for (int k = 0; k < 4; ++k)

@@ -127,6 +127,9 @@ class HarnessTest : public testing::Test {
       test.most_alive_ = std::max(test.most_alive_, test.alive_);
       return subject;
     }
+    void frame(const SuiteConfig& config, Subject&, uint32_t index, double) override {
+      test.frames_ += config.graph.name + std::to_string(index) + " ";
+    }
     void finish(const SuiteConfig&, Subject&, Row& row) override {
       row.error_json = R"({"misclassified": 0.25})";
       row.nonfinite = test.nonfinite_;
@@ -145,7 +148,7 @@ class HarnessTest : public testing::Test {
   Suite suite_;
   BenchOptions options_;
   std::map<std::string, std::vector<double>> ms_{{"base", {2}}};
-  std::string log_, broken_scene_;
+  std::string log_, broken_scene_, frames_;
   int alive_ = 0, most_alive_ = 0;
   uint64_t nonfinite_ = 0;
 };
@@ -180,6 +183,21 @@ TEST_F(HarnessTest, RatioIsTheMedianOverPairs) {
   EXPECT_EQ(row["graph"], "other");
   EXPECT_EQ(row["ratio"]["median"], 2);
   EXPECT_EQ(row["ratio"]["baseline"], "base");
+}
+
+TEST_F(HarnessTest, SequencesShowTheirFramesInTurn) {
+  add("other", 0);
+  ms_ = {{"base", {1}}, {"other", {2}}};
+  suite_.scenes.resize(1);
+  run();
+  EXPECT_EQ(frames_, "");
+  const std::string key = rows()[0]["key"];
+  suite_.frames = 2;
+  options_.overwrite = true;
+  run();
+  EXPECT_EQ(frames_, "base0 other0 base1 other1 ");
+  EXPECT_EQ(rows()[0]["frame_ms"]["n"], 2);
+  EXPECT_NE(rows()[0]["key"], key);
 }
 
 TEST_F(HarnessTest, FailureIsARowAndTheSuiteGoesOn) {

@@ -119,6 +119,19 @@ TEST_F(SuiteTest, SeveralSizes) {
   EXPECT_EQ(suite.sizes.size(), 2u);
 }
 
+TEST_F(SuiteTest, Sequences) {
+  const Suite none = parse(R"({ "schema": 1, "scenes": ["a.glb"], "graphs": ["shadow_mapping"] })");
+  EXPECT_EQ(none.frames, 0u);
+  const Suite suite =
+      parse(R"({ "schema": 1, "scenes": ["a.glb"], "frames": 60, "fps": 24, "graphs": ["shadow_mapping"] })");
+  EXPECT_EQ(suite.frames, 60u);
+  EXPECT_EQ(suite.fps, 24);
+  for (const char* bad : {R"("frames": -1)", R"("fps": 0)", R"("fps": -30)", R"("frames": 0.5)"})
+    EXPECT_NE(problems(std::string(R"({ "schema": 1, "scenes": ["a.glb"], "graphs": ["pcf"], )") + bad + "}"),
+              "")
+        << bad;
+}
+
 TEST_F(SuiteTest, EveryProblemIsToldWithItsPlace) {
   const std::string text = problems(R"({ "scenes": ["absent.glb"], "size": [0, 720], "repeat": 0, "grphs": [],
     "graphs": ["shadow_maping", { "name": "shadow_mapping", "set": { "shadow_mop": 512 } }] })");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -55,6 +56,19 @@ TEST(Table, OnlyVaryingVariablesAreShown) {
   EXPECT_NE(table.find("shadow_mapping shadow_map=512"), std::string::npos);
   EXPECT_NE(table.find("shadow_mapping shadow_map=1024"), std::string::npos);
   EXPECT_EQ(table.find("bias"), std::string::npos);
+}
+
+TEST(Table, SequencesHaveTwoMoreColumns) {
+  json moving = row("pendulum", "pcf", 1024, 0.01, 8, 1);
+  EXPECT_EQ(to_table({moving}).find("flicker"), std::string::npos);
+  moving["sequence"] = {{"rmse", {{"mean", 0.0625}, {"max", 0.1}}}};
+  moving["flicker"] = 0.003;
+  const std::string table = to_table({moving});
+  EXPECT_NE(table.find("mean RMSE"), std::string::npos);
+  EXPECT_NE(table.find("flicker"), std::string::npos);
+  const auto words = line_of(table, "pcf");
+  EXPECT_NE(std::find(words.begin(), words.end(), "0.0625"), words.end());
+  EXPECT_NE(std::find(words.begin(), words.end(), "0.00300"), words.end());
 }
 
 TEST(Table, FailureShowsItsFirstLine) {

@@ -368,6 +368,21 @@ TEST_F(GpuRenderer, HistoryIsTheFrameBefore) {
   EXPECT_EQ(plane(other)[0], 1.0f);
 }
 
+// After an even and an odd number of frames: the copies of history have changed places or not.
+TEST_F(GpuRenderer, PlayForgetsTheFramesBefore) {
+  Renderer r = renderer(
+      file_with(R"({"id": "acc", "type": "test_accumulate", "in": {"last": "acc.result@previous"}})",
+                R"({"visibility": "acc.result"})"));
+  for (const int frames : {2, 3, 1}) {
+    r.play();
+    for (int frame = 1; frame <= frames; ++frame) {
+      r.render(TimingMode::none);
+      EXPECT_EQ(plane(r)[17], float(frame));
+      EXPECT_EQ(r.seconds(), (frame - 1) * settings().frame_seconds);
+    }
+  }
+}
+
 TEST_F(GpuRenderer, HistoryOfABuffer) {
   Renderer r =
       renderer(file_with(R"({"id": "copy", "type": "test_copy_buffer", "in": {"last": "copy.data@previous"}},

@@ -216,15 +216,36 @@ TEST(Flip, BadInput) {
   EXPECT_TRUE(std::isnan(flip(rgb_image(2, 2, std::nanf(""), 0, 0), rgb_image(2, 2, 0, 0, 0))));
 }
 
+// Errors now: .25, -.5, 0, 1; before, at the pixels' points: pixel 2's for 0, none for 1, its own for 2
+// and 3.
+TEST(Flicker, IsTheChangeOfTheErrorWhereAPointIsSeenTwice) {
+  const std::vector<float> result = {0.75f, 0.5f, 1, 1}, reference = {0.5f, 1, 1, 0};
+  const std::vector<float> result_before = {0, 0, 1, 0.5f}, reference_before = {0, 0, 0.5f, 0};
+  std::vector<uint8_t> domain = {0, 0, 0, 0};
+  const std::vector<uint8_t> all = domain;
+  const std::vector<uint32_t> before = {2, not_seen_before, 2, 3};
+  const auto value = [&] {
+    return flicker({result, reference, domain}, {result_before, reference_before, all}, before);
+  };
+  EXPECT_DOUBLE_EQ(*value(), (0.25 + 0.5 + 0.5) / 3);
+  domain[3] = 1;  // not counted now
+  EXPECT_DOUBLE_EQ(*value(), (0.25 + 0.5) / 2);
+  const std::vector<uint8_t> but_2 = {0, 0, 3, 0};  // not counted before
+  EXPECT_FALSE(flicker({result, reference, domain}, {result_before, reference_before, but_2}, before));
+  const std::vector<float> broken = {NAN, 0, 0, 0};
+  EXPECT_TRUE(std::isnan(*flicker({broken, reference, all}, {result_before, reference_before, all}, before)));
+  EXPECT_THROW(flicker({result, reference, domain}, {result_before, reference_before, {}}, before), Error);
+}
+
 TEST(MetricInfos, AreNamedOnceAndComplete) {
   std::set<std::string> names;
   for (const MetricInfo& info : metric_infos()) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_FALSE(info.definition.empty() || info.unit.empty() || info.source.empty()) << info.name;
   }
-  for (const char* name :
-       {"rmse", "mae", "max", "bias", "misclassified", "wrongly_lit", "wrongly_shadowed", "penumbra_rmse",
-        "umbra_light", "leak", "over_shadow", "acne", "ssim", "flip", "pixels", "excluded", "nonfinite"})
+  for (const char* name : {"rmse", "mae", "max", "bias", "misclassified", "wrongly_lit", "wrongly_shadowed",
+                           "penumbra_rmse", "umbra_light", "leak", "over_shadow", "acne", "ssim", "flip",
+                           "flicker", "pixels", "excluded", "nonfinite"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
 

@@ -160,7 +160,7 @@ struct AreaError {
 AreaError area_error(uint32_t samples) {
   const glm::dvec3 at(0.25, 6, -0.5);
   Light l = light(LightType::spot, at, {0.25, 0, -0.5});
-  l.area = AreaLight{1.6, 1.1};
+  l.area = AreaLight{AreaLight::Shape::rectangle, 1.6, 1.1, {}, {}};
   const Scene scene = square_over_plane(l);
   const Reference r = trace(scene, samples);
   EXPECT_EQ(r.samples, samples);
@@ -199,7 +199,7 @@ TEST(Reference, SquareAreaLightOverSquare) {
 
 TEST(Reference, AreaSamplesRepeat) {
   Light l = light(LightType::spot, {0.25, 6, -0.5});
-  l.area = AreaLight{1.6, 1.1};
+  l.area = AreaLight{AreaLight::Shape::rectangle, 1.6, 1.1, {}, {}};
   const Scene scene = square_over_plane(l);
   EXPECT_EQ(trace(scene, 32).visibility, trace(scene, 32).visibility);
   EXPECT_EQ(trace(scene, 0).noise_floor, 0);
@@ -512,7 +512,7 @@ class ReferenceCache : public testing::Test {
 
 TEST_F(ReferenceCache, ImagesKeepEverything) {
   Light l = light(LightType::spot, {0.25, 6, -0.5});
-  l.area = AreaLight{1.6, 1.1};
+  l.area = AreaLight{AreaLight::Shape::rectangle, 1.6, 1.1, {}, {}};
   Scene scene = square_over_plane(l);
   scene.lights.push_back(light(LightType::directional, {0.3, 1, -0.2}));
   const Reference r = trace(scene, 16);
@@ -590,7 +590,9 @@ TEST_F(ReferenceCache, KeyDependsOnWhatTheRaysSee) {
   EXPECT_TRUE(changed([](S& s, R&) { s.cameras[0].aspect = 1.5; }));
   EXPECT_TRUE(changed([](S& s, R&) { s.lights[0].map_fov = 1; }));
   EXPECT_TRUE(changed([](S& s, R&) { s.lights[0].type = LightType::point; }));
-  EXPECT_TRUE(changed([](S& s, R&) { s.lights[0].area = AreaLight{1, 1}; }));
+  EXPECT_TRUE(changed([](S& s, R&) {
+    s.lights[0].area = AreaLight{AreaLight::Shape::rectangle, 1, 1, {}, {}};
+  }));
   EXPECT_TRUE(changed([](S&, R& r) { r.width = 640; }));
   EXPECT_TRUE(changed([](S&, R& r) { r.samples = 64; }));
   EXPECT_FALSE(changed([](S& s, R&) { s.lights[0].intensity = 7; }));

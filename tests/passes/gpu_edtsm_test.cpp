@@ -118,6 +118,16 @@ TEST(Edtsm, TransformsAgree) {
   }
 }
 
+// A screen-space penumbra is all there, whatever radius the transform was given.
+TEST(Edtsm, TheTransformReachesAsFarAsTheScreenSpacePenumbra) {
+  const Scene scene = edge_scene({8, 60, 40, 75});
+  const Values screen = {
+      {"metric", "screen"}, {"pixels", 40.0}, {"penumbra", 0.0}, {"penumbra_relative", 0.0}};
+  Values near = screen, far = screen;
+  near["radius"] = std::int64_t(1), far["radius"] = std::int64_t(64);
+  EXPECT_EQ(edtsm(scene, near), edtsm(scene, far));
+}
+
 // Penumbrae of any width, from none to wider than the scene, stay in range and keep umbra and light apart.
 TEST(Edtsm, AnyWidthIsFiniteAndInRange) {
   const Scene scene = edge_scene({8, 35, 40, 45});

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <set>
 
+#include "engine/area_light.h"
 #include "engine/error.h"
 #include "engine/graph.h"
 #include "engine/scene.h"
@@ -44,8 +45,8 @@ TEST_P(GeneratedScene, LoadsWithoutWarnings) {
   EXPECT_EQ(scene.warnings.messages, std::vector<std::string>{});
   EXPECT_EQ(scene.warnings.degenerate_triangles, 0u);
   EXPECT_EQ(scene.warnings.nonfinite_triangles, 0u);
-  ASSERT_EQ(scene.lights.size(), 1u);
-  ASSERT_EQ(scene.cameras.size(), 1u);
+  ASSERT_EQ(scene.lights.size(), GetParam() == "area_shapes" ? 5u : 1u);
+  ASSERT_EQ(scene.cameras.size(), GetParam() == "pendulum" ? 2u : 1u);
   EXPECT_EQ(scene.lights[0].type, GetParam() == "hills" ? LightType::directional : LightType::spot);
   EXPECT_EQ(scene.lights[0].area.has_value(), GetParam() != "hills");
   const SceneFacts facts = scene_facts(scene, scene.cameras[0], 16.0 / 9.0);
@@ -137,6 +138,53 @@ TEST(SceneGenerate, SquareAndLightHaveTheirStatedMeasures) {
   EXPECT_EQ(light.area->width, square_plane::light_side);
   EXPECT_EQ(scene.bounds.max.y, square_plane::blocker_height);
   EXPECT_EQ(scene.bounds.max.x, square_plane::ground_half);
+}
+
+TEST(SceneInfo, TellsWhatMoves) {
+  const auto text = [](const char* name) {
+    return describe_scene(load_scene(resource_root() / "assets/scenes" / name));
+  };
+  EXPECT_NE(text("pendulum.glb").find("animation: 2 s, moves 1 instances, 1 cameras, 0 lights"),
+            std::string::npos);
+  EXPECT_NE(text("moving_light.glb").find("animation: 2 s, moves 0 instances, 0 cameras, 1 lights"),
+            std::string::npos);
+  EXPECT_EQ(text("foliage.glb").find("animation"), std::string::npos);
+}
+
+TEST(SceneGenerate, AreaShapesHaveTheirStatedMeasures) {
+  using Shape = AreaLight::Shape;
+  namespace s = area_shapes;
+  const Scene scene = load_scene(resource_root() / "assets/scenes/area_shapes.glb");
+  ASSERT_EQ(scene.lights.size(), 5u);
+  const double disc = 2 * s::disc_radius, sphere = 2 * s::sphere_radius;
+  std::vector<glm::dvec2> outline;
+  for (const auto& p : s::polygon) outline.emplace_back(p[0], p[1]);
+  const AreaLight areas[] = {{Shape::rectangle, s::rectangle_width, s::rectangle_height, {}, {}},
+                             {Shape::disc, disc, disc, {}, {}},
+                             {Shape::sphere, sphere, sphere, {}, {}},
+                             polygon_light(outline),
+                             {Shape::rectangle, s::window_side, s::window_side, {}, 0}};
+  for (size_t i = 0; i < 5; ++i) {
+    const Light& light = scene.lights[i];
+    EXPECT_EQ(*light.area, areas[i]) << light.name;
+    EXPECT_EQ(glm::dvec3(light.world_from_light[3]),
+              glm::dvec3(s::lights[i][0], s::light_height, s::lights[i][1]));
+    EXPECT_NEAR(light.world_from_light[0].x, 1.0, 1e-12);
+    EXPECT_NEAR(light.world_from_light[1].z, -1.0, 1e-12);
+  }
+  const double half = 0.25 * s::window_side;  // one diagonal of panes is black
+  EXPECT_EQ(emission_at(scene, areas[4], {half, half}), glm::dvec3(0.0));
+  EXPECT_EQ(emission_at(scene, areas[4], {-half, -half}), glm::dvec3(0.0));
+  EXPECT_EQ(emission_at(scene, areas[4], {-half, half}).r, 1.0);
+  EXPECT_EQ(emission_at(scene, areas[4], {half, -half}).b, 1.0);
+}
+
+TEST(SceneInfo, NamesTheShapesOfAreaLights) {
+  const std::string text = describe_scene(load_scene(resource_root() / "assets/scenes/area_shapes.glb"));
+  for (const char* part : {"area: rectangle 1.6 x 0.8\n", "area: disc of radius 0.6\n",
+                           "area: sphere of radius 0.6\n", "area: polygon of 4 corners in 1.5 x 1.5\n",
+                           "area: rectangle 1.2 x 1.2 with emission texture window 2x2\n"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
 TEST(SceneInfo, NamesWhatIsThere) {

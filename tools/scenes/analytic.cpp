@@ -1,8 +1,21 @@
+#include <utility>
+
+#include "engine/area_light.h"
+#include "engine/png.h"
 #include "tools/scene_generate.h"
 #include "tools/scenes/scenes.h"
 #include "tools/scenes/shapes.h"
 
 namespace gnomon::generate {
+namespace {
+
+// Row 0 is at the light's +y.
+std::string window_png() {
+  const std::vector<uint8_t> panes = {255, 200, 120, 255, 0, 0, 0, 255, 0, 0, 0, 255, 120, 200, 255, 255};
+  return png::encode(panes, area_shapes::window_panes, area_shapes::window_panes, 4, "window.png");
+}
+
+}  // namespace
 
 std::string sphere_plane_scene() {
   namespace s = sphere_plane;
@@ -29,6 +42,33 @@ std::string square_plane_scene() {
   builder.add("blocker", blocker, builder.material({"blocker", {0.2, 0.4, 0.7}, true, {}, {}}));
   builder.camera({3.6, 3.2, 4.4}, {0.0, 0.5, 0.0}, 42.0, 0.1);
   builder.spot({0, s::light_height, 0}, {0, 0, 0}, 72.0, 0.7, s::light_side);
+  return builder.glb();
+}
+
+std::string area_shapes_scene() {
+  namespace s = area_shapes;
+  using Area = AreaLight;
+  Builder builder("area_shapes");
+  Shape ground, blocker;
+  add_ground(ground, glm::dvec2(s::ground_half), 0.0);
+  add_ground(blocker, glm::dvec2(s::blocker_half), s::blocker_height);
+  builder.add("ground", ground, builder.material({"ground", {0.8, 0.8, 0.8}, true, {}, {}}));
+  builder.add("blocker", blocker, builder.material({"blocker", {0.2, 0.4, 0.7}, true, {}, {}}));
+  builder.camera({3.6, 5.2, 5.4}, {0.0, 0.2, 0.0}, 48.0, 0.1);
+  const uint32_t window = builder.texture("window", window_png(), true);
+  std::vector<glm::dvec2> outline;
+  for (const auto& p : s::polygon) outline.emplace_back(p[0], p[1]);
+  const double disc = 2 * s::disc_radius, sphere = 2 * s::sphere_radius, pane = s::window_side;
+  const std::pair<const char*, Area> areas[] = {
+      {"rectangle", {Area::Shape::rectangle, s::rectangle_width, s::rectangle_height, {}, {}}},
+      {"disc", {Area::Shape::disc, disc, disc, {}, {}}},
+      {"sphere", {Area::Shape::sphere, sphere, sphere, {}, {}}},
+      {"polygon", polygon_light(outline)},
+      {"window", {Area::Shape::rectangle, pane, pane, {}, window}}};
+  for (size_t i = 0; i < std::size(areas); ++i) {
+    const glm::dvec3 place(s::lights[i][0], 0, s::lights[i][1]), up(0, s::light_height, 0);
+    builder.area_spot(areas[i].first, place + up, place, 84.0, 0.15, areas[i].second);
+  }
   return builder.glb();
 }
 

@@ -1,5 +1,6 @@
 #include "tools/scenes/builder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
@@ -20,20 +21,39 @@ double rounded(double value) { return std::round(value * 1e9) / 1e9 + 0.0; }
 Json to_json(const glm::dvec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
 
 Json rotation_json(const glm::dmat3& rotation) {
-  glm::dquat q = glm::normalize(glm::quat_cast(rotation));
-  if (q.w < 0) q = -q;
+  const glm::dvec4 q = rotation_value(rotation);
   return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)};
 }
 
-// Looks along -z; `up` is y, or -z when looking straight up or down.
+Json area_json(const AreaLight& area) {
+  using Kind = AreaLight::Shape;  // Shape is a mesh here
+  Json json = Json::object();
+  if (area.shape == Kind::polygon) {
+    json["shape"] = "polygon";
+    for (const glm::dvec2& p : area.outline) json["outline"].push_back({p.x, p.y});
+  } else if (area.shape == Kind::rectangle) {
+    json = {{"width", area.width}, {"height", area.height}};
+  } else {
+    json = {{"shape", area.shape == Kind::disc ? "disc" : "sphere"}, {"radius", 0.5 * area.width}};
+  }
+  if (area.emission) json["emission"] = *area.emission;
+  return json;
+}
+
+}  // namespace
+
+glm::dvec4 rotation_value(const glm::dmat3& rotation) {
+  glm::dquat q = glm::normalize(glm::quat_cast(rotation));
+  if (q.w < 0) q = -q;
+  return {q.x, q.y, q.z, q.w};
+}
+
 glm::dmat3 looking(const glm::dvec3& direction) {
   const glm::dvec3 z = -glm::normalize(direction);
   const glm::dvec3 up = std::abs(z.y) < 0.999 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
   const glm::dvec3 x = glm::normalize(glm::cross(up, z));
   return {x, glm::cross(z, x), z};
 }
-
-}  // namespace
 
 uint32_t Shape::vertex(const glm::dvec3& position, const glm::dvec3& normal) {
   positions.push_back(position);
@@ -134,14 +154,20 @@ Builder::Builder(std::string name) : impl_(std::make_unique<Impl>()) {
 
 Builder::~Builder() = default;
 
-uint32_t Builder::texture(const std::string& name, const std::string& png) {
+uint32_t Builder::texture(const std::string& name, const std::string& png, bool nearest) {
   Json& document = impl_->document;
   const size_t view = impl_->view(png.data(), png.size(), 0);
   document["images"].push_back({{"name", name}, {"bufferView", view}, {"mimeType", "image/png"}});
-  if (!document.contains("samplers"))
-    document["samplers"] =
-        Json::array({{{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", 33071}, {"wrapT", 33071}}});
-  document["textures"].push_back({{"name", name}, {"source", document["images"].size() - 1}, {"sampler", 0}});
+  constexpr int filter_nearest = 9728, filter_linear = 9729, clamp_to_edge = 33071;
+  const int filter = nearest ? filter_nearest : filter_linear;
+  const Json sampler = {
+      {"magFilter", filter}, {"minFilter", filter}, {"wrapS", clamp_to_edge}, {"wrapT", clamp_to_edge}};
+  Json& samplers = document["samplers"];
+  const auto found = std::find(samplers.begin(), samplers.end(), sampler);
+  const auto index = static_cast<size_t>(found - samplers.begin());
+  if (index == samplers.size()) samplers.push_back(sampler);
+  document["textures"].push_back(
+      {{"name", name}, {"source", document["images"].size() - 1}, {"sampler", index}});
   return static_cast<uint32_t>(document["textures"].size() - 1);
 }
 
@@ -191,22 +217,25 @@ void Builder::camera(const glm::dvec3& eye, const glm::dvec3& target, double fov
 
 void Builder::spot(const glm::dvec3& eye, const glm::dvec3& target, double map_fov, double radiance,
                    double side) {
+  const double square = side > 0 ? side : std::round(4.0 * glm::length(target - eye)) / 100.0;
+  area_spot("light", eye, target, map_fov, radiance, {AreaLight::Shape::rectangle, square, square, {}, {}});
+}
+
+void Builder::area_spot(const std::string& name, const glm::dvec3& eye, const glm::dvec3& target,
+                        double map_fov, double radiance, const AreaLight& area) {
   const double distance = glm::length(target - eye), degree = std::numbers::pi / 180;
   const double diagonal =
       std::atan(std::sqrt(2.0) * std::tan(0.5 * map_fov * degree));  // the square is inside the cone
   const size_t light = impl_->add_light(
-      {{"name", "light"},
+      {{"name", name},
        {"type", "spot"},
        {"intensity", std::round(radiance * std::numbers::pi * distance * distance)},
        {"spot", {{"innerConeAngle", rounded(diagonal)}, {"outerConeAngle", rounded(diagonal + degree)}}}});
-  const double area = side > 0 ? side : std::round(4.0 * distance) / 100.0;
-  impl_->add_node(
-      {{"name", "light"},
-       {"translation", to_json(eye)},
-       {"rotation", rotation_json(looking(target - eye))},
-       {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}},
-       {"extras",
-        {{"area_light", {{"width", area}, {"height", area}}}, {"light", {{"fovy_deg", map_fov}}}}}});
+  impl_->add_node({{"name", name},
+                   {"translation", to_json(eye)},
+                   {"rotation", rotation_json(looking(target - eye))},
+                   {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}},
+                   {"extras", {{"area_light", area_json(area)}, {"light", {{"fovy_deg", map_fov}}}}}});
 }
 
 void Builder::sun(const glm::dvec3& direction, double radiance) {
@@ -215,6 +244,29 @@ void Builder::sun(const glm::dvec3& direction, double radiance) {
   impl_->add_node({{"name", "sun"},
                    {"rotation", rotation_json(looking(direction))},
                    {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+}
+
+void Builder::move(const std::string& node, const Motion& motion) {
+  Json& document = impl_->document;
+  size_t index = document["nodes"].size() - 1;
+  while (index > 0 && document["nodes"][index]["name"] != node) --index;
+  std::vector<float> times, values;
+  for (const double t : motion.times) times.push_back(on_grid(t));
+  const int components = motion.property == "rotation" ? 4 : 3;
+  for (const glm::dvec4& v : motion.values)
+    for (int i = 0; i < components; ++i) values.push_back(on_grid(v[i]));
+  const size_t input =
+      impl_->accessor(impl_->view(times.data(), times.size() * 4, 0), type_float, times.size(), "SCALAR");
+  document["accessors"][input]["min"] = {times.front()};  // glTF asks for both
+  document["accessors"][input]["max"] = {times.back()};
+  const size_t output = impl_->accessor(impl_->view(values.data(), values.size() * 4, 0), type_float,
+                                        motion.values.size(), components == 4 ? "VEC4" : "VEC3");
+  if (!document.contains("animations"))
+    document["animations"] = Json::array({{{"channels", Json::array()}, {"samplers", Json::array()}}});
+  Json& animation = document["animations"][0];
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size()}, {"target", {{"node", index}, {"path", motion.property}}}});
+  animation["samplers"].push_back({{"input", input}, {"output", output}});
 }
 
 std::string Builder::glb() const {

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene.h"
+
 namespace gnomon::generate {
 
 struct Shape {  // triangles, counter-clockwise in front; world or object units
@@ -38,12 +40,23 @@ struct Placement {
   glm::dvec3 scale{1.0};
 };
 
+struct Motion {          // key frames, interpolated linearly
+  std::string property;  // of a node: translation, rotation or scale
+  std::vector<double> times;
+  std::vector<glm::dvec4> values;  // x, y, z, or a quaternion's x, y, z, w
+};
+// A rotation as Motion has it.
+glm::dvec4 rotation_value(const glm::dmat3& rotation);
+// The rotation that looks along -z in `direction`; `up` is y, or -z when looking straight up or down.
+glm::dmat3 looking(const glm::dvec3& direction);
+
 class Builder {
  public:
   explicit Builder(std::string name);
   ~Builder();
 
-  uint32_t texture(const std::string& name, const std::string& png);
+  // Clamped at its borders; bilinear, or nearest.
+  uint32_t texture(const std::string& name, const std::string& png, bool nearest = false);
   uint32_t material(const Surface& surface);
   uint32_t mesh(const std::string& name, const Shape& shape, uint32_t material);
   void node(const std::string& name, uint32_t mesh, const Placement& placement = {});
@@ -55,7 +68,12 @@ class Builder {
   // facing it at the target the radiance `radiance`. Area light: a square of `side`, or 4 % of the distance.
   void spot(const glm::dvec3& eye, const glm::dvec3& target, double map_fov, double radiance = 0.7,
             double side = 0);
+  // The same with a name and an area of any shape; `area.emission` is what texture() returned.
+  void area_spot(const std::string& name, const glm::dvec3& eye, const glm::dvec3& target, double map_fov,
+                 double radiance, const AreaLight& area);
   void sun(const glm::dvec3& direction, double radiance);
+  // Animates the last node of that name.
+  void move(const std::string& node, const Motion& motion);
   std::string glb() const;
 
  private:

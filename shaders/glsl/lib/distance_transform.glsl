@@ -19,6 +19,7 @@ int squared_distance(ivec2 a, ivec2 b) { return square(a.x - b.x) + square(a.y -
 // ---- sites of a column as bits: bit i of word w of a column stands for the pixel y = 32 w + i ----
 
 const int WORD = 32;            // pixels a word
+const int CHUNK = 32;           // columns of a word of `kept` (distance_transform_prune)
 const int NONE_ABOVE = -0x4000; // rows further away than any in an image
 const int NONE_BELOW = 0x8000;
 
