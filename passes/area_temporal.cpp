@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "engine/area_light.h"
 #include "engine/context.h"
@@ -10,8 +11,9 @@
 namespace gnomon {
 namespace {
 
-constexpr uint32_t kLightMoved = 1, kCastersMoved = 2;  // bits, as in shaders/glsl/area_temporal_query.glsl
-constexpr uint32_t kMapLayers = 2;                      // of what stands still and of what moves
+// Bits, as in shaders/glsl/area_temporal_query.glsl.
+constexpr uint32_t kLightMoved = 1, kCastersMoved = 2, kShadowsFade = 4;
+constexpr uint32_t kMapLayers = 2;  // of what stands still and of what moves
 
 void declare_history(Declaration& d) {
   d.number("depth_tolerance", 0.01, 1e-6, 1, "view depth",
@@ -19,7 +21,8 @@ void declare_history(Declaration& d) {
   d.integer("most_tests", 4096, 16, 1 << 23, "1", "tests that count; older ones weigh less beyond");
   d.number("age", 0.8, 0, 1, "1", "weight of older tests from frame to frame while the light moves");
   d.number("most_moving", 8, 1, 4096, "1", "tests that count where a moving caster's shadow was");
-  d.number("delta", 2, 1, 4096, "1", "tests that are forgotten each frame there, while casters move (5.16)");
+  d.number("delta", 2, 1.125, 4096, "1",
+           "tests that are forgotten each frame there, while casters move (5.16)");
 }
 
 void declare_filter(Declaration& d) {
@@ -37,6 +40,12 @@ void declare_filter(Declaration& d) {
   const double high =
       d.number("s_max", 0.2, 0, 1, "visibility", "standard error from which the filter alone counts");
   if (!(low < high)) d.refuse("s_max", "above s_min");
+}
+
+// Frames that a moving caster's shadow takes to fade: one test is added to it in each.
+uint32_t frames_to_fade(const Params& params) {
+  const double most = params.number("most_moving"), delta = params.number("delta");
+  return 1 + uint32_t(std::ceil(std::max(most - delta, 0.0) / (delta - 1)));
 }
 
 class AreaTemporal : public Pass {
@@ -80,6 +89,7 @@ class AreaTemporal : public Pass {
   void record(Context& c) override {
     const auto& faces = c.scene().faces();
     maps_.begin(c);
+    still_frames_ = c.scene().casters_changed() ? 0 : still_frames_ + 1;
     for (uint32_t face = 0; face < faces.size(); ++face) {
       if (face > 0) c.own_barrier();  // maps and list are used again
       sample(c, face);
@@ -122,9 +132,10 @@ class AreaTemporal : public Pass {
     const Light& light = c.scene().scene().lights[index];
     const bool first = c.scene().frame().counts.z == 0;
     const bool light_moved = first || poses_[index] != light.world_from_light;
-    const bool casters_moved = c.scene().casters_changed();
-    AreaPush push{index, face, face,
-                  1,     0,    (light_moved ? kLightMoved : 0) | (casters_moved ? kCastersMoved : 0)};
+    AreaPush push{index, face, face, 1, 0, 0};
+    if (light_moved) push.bit |= kLightMoved;
+    if (still_frames_ == 0) push.bit |= kCastersMoved;
+    if (still_frames_ < frames_to_fade(c.params())) push.bit |= kShadowsFade;
     const double size = light.area ? std::max(light.area->width, light.area->height) : 0.0;
     push.part[0] = std::bit_cast<uint32_t>(float(size));
     return push;
@@ -155,6 +166,7 @@ class AreaTemporal : public Pass {
   AreaShader hard_, still_, reprojected_, search_, filter_;
   std::vector<LightSequence> sequences_;  // per light
   std::vector<glm::dmat4> poses_;         // of the lights in the frame before
+  uint32_t still_frames_ = 0;             // since casters moved
   bool moving_ = false;                   // some instance may move
 };
 

@@ -58,10 +58,8 @@ ShadowHistory aged(ShadowHistory h, bool meets) {
   h = limit_tests(h, params.most_tests - 1.0);
   if ((push.bit & LIGHT_MOVED) != 0u) h.shadowed *= params.age, h.tests *= params.age;
 #ifdef MOVING_CASTERS
-  if ((push.bit & CASTERS_MOVED) != 0u) {
-    if (meets) h = no_history(h.depth);
-    if (h.moving) h = fade(h, params.most_moving, params.delta);
-  }
+  if ((push.bit & CASTERS_MOVED) != 0u && meets) h = no_history(h.depth);
+  if ((push.bit & SHADOWS_FADE) != 0u && !meets && h.moving) h = fade(h, params.most_moving, params.delta);
   h.moving = meets || (h.moving && h.tests > 0.0);
 #endif
   if (h.tests <= 0.0) h.blocker = BLOCKER_UNKNOWN;

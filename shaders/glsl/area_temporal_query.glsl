@@ -4,7 +4,8 @@
 #include "lib/temporal_shadow.glsl"
 #include "pixel_list.glsl"
 
-const uint LIGHT_MOVED = 1u, CASTERS_MOVED = 2u;  // bits of push.bit
+// Bits of push.bit. SHADOWS_FADE: so few frames ago that shadows of then may still be there.
+const uint LIGHT_MOVED = 1u, CASTERS_MOVED = 2u, SHADOWS_FADE = 4u;
 
 const int STILL_LAYER = 0, MOVING_LAYER = 1;  // of `maps`: casters that stand still (or all), casters that may move
 
