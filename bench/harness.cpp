@@ -99,6 +99,7 @@ class SuiteRun {
             {"instrumented", suite_.instrumented},
             {"frames", suite_.frames},
             {"fps", suite_.fps},
+            {"images", suite_.images},
             {"reference", {{"samples", suite_.samples}}}};
   }
 

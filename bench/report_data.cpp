@@ -8,6 +8,7 @@
 #include <set>
 
 #include "bench/pareto.h"
+#include "bench/report_fit.h"
 #include "bench/run_json.h"
 #include "engine/metrics.h"
 

@@ -163,6 +163,7 @@ json to_json(const Row& row) {
       {"warnings", row.warnings},
       {"facts", row.facts},
       {"status", row.status}};
+  if (!row.images.empty()) object["images"] = row.images;
   if (row.sequence) object.update(to_json(*row.sequence));
   if (!row.key.empty()) object["key"] = row.key;
   return object;

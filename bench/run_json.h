@@ -47,7 +47,8 @@ struct Row {
   std::optional<SequenceResult> sequence;  // frames in order
   uint64_t nonfinite = 0;                  // NaN or Inf values in color and visibility
   std::optional<Ratio> ratio;
-  std::string status = "ok";  // or "error: ..."
+  std::map<std::string, std::string> images;  // what is shown -> its file beside results.jsonl
+  std::string status = "ok";                  // or "error: ..."
 };
 
 // Fills in what a graph says of itself.

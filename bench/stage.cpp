@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "bench/report_images.h"
 #include "bench/sequence.h"
 #include "bench/truth.h"
 #include "engine/animation.h"
@@ -52,12 +53,13 @@ class DeviceStage final : public Stage {
  public:
   // `truth`: of the frame whose error is the row's.
   DeviceStage(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene,
-              const RenderSettings& settings, Truth truth, Sequence sequence)
+              const RenderSettings& settings, Truth truth, Sequence sequence, fs::path images_of)
       : device_(std::move(device)),
         scene_(std::move(scene)),
         settings_(settings),
         truth_(std::move(truth)),
-        sequence_(std::move(sequence)) {}
+        sequence_(std::move(sequence)),
+        images_of_(std::move(images_of)) {}
 
   std::unique_ptr<Subject> open(const SuiteConfig& config) override {
     return std::make_unique<DeviceSubject>(Renderer(device_, scene_, config.graph, settings_));
@@ -88,6 +90,9 @@ class DeviceStage final : public Stage {
     const bool finite_color = shown.color && count_nonfinite(*shown.color) == 0;
     row.error_json =
         truth_.error_json(shown.visibility, finite_color ? &*shown.color : nullptr, config.graph.vars);
+    if (!images_of_.empty())
+      row.images =
+          write_row_images(images_of_, row, truth_, shown.visibility, shown.color ? &*shown.color : nullptr);
   }
 
  private:
@@ -96,11 +101,13 @@ class DeviceStage final : public Stage {
   RenderSettings settings_;
   Truth truth_;
   Sequence sequence_;
+  fs::path images_of_;  // folder of results.jsonl; empty: no images
 };
 
 }  // namespace
 
-StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& cache, const Tell& progress) {
+StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& cache, const Tell& progress,
+                         const fs::path& out) {
   return [=](const Suite& suite, const fs::path& file, Extent size) -> std::unique_ptr<Stage> {
     auto scene = std::make_shared<const Scene>(load_scene(file));
     if (suite.camera >= scene->cameras.size())
@@ -126,7 +133,8 @@ StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& 
         last > 0 && scene->animation ? std::make_shared<const Scene>(posed(*scene, last)) : scene;
     return std::make_unique<DeviceStage>(
         device, scene, settings, Truth(shown, reference, cache),
-        Sequence{suite.frames, SequenceTruth(scene, reference, cache, settings.frame_seconds)});
+        Sequence{suite.frames, SequenceTruth(scene, reference, cache, settings.frame_seconds)},
+        suite.images ? out : fs::path());
   };
 }
 

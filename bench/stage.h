@@ -11,8 +11,10 @@
 namespace gnomon {
 
 // Each Stage loads the scene and traces its reference, or reads it from `cache`. `progress`: of the tracing,
-// 0..1 and the scene's name; may be empty.
+// 0..1 and the scene's name; may be empty. `out`: the folder of results.jsonl, in whose folder images a suite
+// with `images` gets its PNGs (bench/report_images.h).
 StageMaker device_stages(const std::shared_ptr<Device>& device, const std::filesystem::path& cache,
-                         const std::function<void(double, const std::string&)>& progress = {});
+                         const std::function<void(double, const std::string&)>& progress = {},
+                         const std::filesystem::path& out = {});
 
 }  // namespace gnomon

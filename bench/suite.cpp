@@ -272,6 +272,12 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
       read_count(object, problems, file.string(), "instrumented", suite.instrumented, 0, 100000);
   suite.frames = read_count(object, problems, file.string(), "frames", suite.frames, 0, 100000);
   suite.fps = object.number("fps", suite.fps);
+  if (const json* images = object.find("images")) {
+    if (images->is_boolean())
+      suite.images = images->get<bool>();
+    else
+      problems.add("'images' must be true or false", file.string(), object.place_of("images"));
+  }
   if (!(suite.fps > 0 && suite.fps <= 1e6))
     problems.add(fmt::format("'fps' is {}: must be above 0 and at most 1e6", suite.fps), file.string(),
                  object.place_of("fps"));

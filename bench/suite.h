@@ -27,15 +27,16 @@ struct Suite {
   std::string baseline;                       // name of a graph of the suite
   std::vector<SuiteConfig> configs;           // sweeps expanded
   uint32_t camera = 0;
-  uint32_t warmup = 2;               // frames
-  uint32_t repeat = 11;              // rounds that are timed without stamps
-  uint32_t frames = 0;               // of a sequence from the scene's time 0, instead of `repeat`; 0: none
-  double fps = 30;                   // frames a second of the scene's time
-  uint32_t instrumented = 5;         // rounds with stamps, of each mode
-  uint32_t samples = 0;              // of the reference; 0: hard shadows of the lights' centres
+  uint32_t warmup = 2;                  // frames
+  uint32_t repeat = 11;                 // rounds that are timed without stamps
+  uint32_t frames = 0;                  // of a sequence from the scene's time 0, instead of `repeat`; 0: none
+  double fps = 30;                      // frames a second of the scene's time
+  uint32_t instrumented = 5;            // rounds with stamps, of each mode
+  uint32_t samples = 0;                 // of the reference; 0: hard shadows of the lights' centres
   uint64_t memory = uint64_t{1} << 30;  // bytes: RenderSettings::memory; not in the file
-  std::string graphs_json;           // "graphs" as written
-  std::vector<std::string> notices;  // scenes that are not there, one sentence each
+  bool images = false;                  // write PNGs of every row beside the results
+  std::string graphs_json;              // "graphs" as written
+  std::vector<std::string> notices;     // scenes that are not there, one sentence each
 };
 
 // Every size at which some graph is measured, each once: the suite's first.

@@ -49,11 +49,13 @@ const std::vector<std::vector<uint32_t>>& Truth::deep_umbra_of(const EdgeSetting
 std::string Truth::error_json(const Image& visibility, const Image* color, const Values& vars) const {
   const EdgeSettings edges{&tracer_, camera_, map_size_of(vars)};
   MeasuredError error = measure_visibility(visibility, reference_, edges, deep_umbra_of(edges));
-  if (color != nullptr) {
-    if (shaded_.width == 0) shaded_ = shade_reference(*scene_, camera_, reference_);
-    error.all.flip = flip(rgb_of(*color), shaded_);
-  }
+  if (color != nullptr) error.all.flip = flip(rgb_of(*color), shaded());
   return to_json(error).dump();
+}
+
+const Image& Truth::shaded() const {
+  if (shaded_.width == 0) shaded_ = shade_reference(*scene_, camera_, reference_);
+  return shaded_;
 }
 
 }  // namespace gnomon

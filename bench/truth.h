@@ -29,6 +29,7 @@ class Truth {
   // when there is none).
   std::string error_json(const Image& visibility, const Image* color, const Values& vars) const;
   const Reference& reference() const { return reference_; }
+  const Image& shaded() const;  // shade_reference() of it
 
  private:
   std::shared_ptr<const Scene> scene_;

@@ -15,6 +15,7 @@ install(EXPORT gnomonTargets NAMESPACE gnomon:: DESTINATION ${package_dir})
 install(DIRECTORY engine bench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gnomon FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY shaders assets DESTINATION ${CMAKE_INSTALL_DATADIR}/gnomon)
 install(DIRECTORY bench/suites DESTINATION ${CMAKE_INSTALL_DATADIR}/gnomon/bench)
+install(DIRECTORY tools/report DESTINATION ${CMAKE_INSTALL_DATADIR}/gnomon/tools)
 
 configure_package_config_file(cmake/gnomonConfig.cmake.in ${PROJECT_BINARY_DIR}/gnomonConfig.cmake
                               INSTALL_DESTINATION ${package_dir})

@@ -218,8 +218,8 @@ void Context::render(const Targets& targets, const std::function<void()>& body) 
   for (const ColorTarget& target : targets.colors) {
     const GpuImage& image = physical(target.port).image;
     note(image);
-    auto info = attachment(target_view(image, targets),
-                           layout_of(node_, target.port, image.shape().format), target.clear.has_value());
+    auto info = attachment(target_view(image, targets), layout_of(node_, target.port, image.shape().format),
+                           target.clear.has_value());
     if (target.clear) std::copy(target.clear->begin(), target.clear->end(), info.clearValue.color.float32);
     colors.push_back(info);
   }
@@ -229,9 +229,9 @@ void Context::render(const Targets& targets, const std::function<void()>& body) 
     const GpuImage& image = physical(targets.depth->port).image;
     note(image);
     stencil = image.aspect() & VK_IMAGE_ASPECT_STENCIL_BIT;
-    depth = attachment(target_view(image, targets),
-                       layout_of(node_, targets.depth->port, image.shape().format),
-                       targets.depth->clear.has_value());
+    depth =
+        attachment(target_view(image, targets), layout_of(node_, targets.depth->port, image.shape().format),
+                   targets.depth->clear.has_value());
     const Access access = node_.declaration.find(targets.depth->port)->access;
     if (!has(access, Access::depth)) depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;  // planned as a read
     depth.clearValue.depthStencil = {targets.depth->clear.value_or(0.0f), targets.depth->clear_stencil};
@@ -308,8 +308,8 @@ void Context::query(const OcclusionQueries& queries, uint32_t index, const std::
 
 void Context::results(const OcclusionQueries& queries, uint32_t count, const std::string& buffer_port) {
   constexpr VkDeviceSize kStride = 8;  // bytes: two words
-  vkCmdCopyQueryPoolResults(commands_, queries.pool(), 0, count, physical(buffer_port).buffer.handle(), 0, kStride,
-                            VK_QUERY_RESULT_WAIT_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
+  vkCmdCopyQueryPoolResults(commands_, queries.pool(), 0, count, physical(buffer_port).buffer.handle(), 0,
+                            kStride, VK_QUERY_RESULT_WAIT_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
 }
 
 void Context::draw_fullscreen(const Pipeline& pipeline) {

@@ -81,7 +81,8 @@ struct DepthTarget {
 struct Targets {
   std::vector<ColorTarget> colors;
   std::optional<DepthTarget> depth;
-  // `layers` layers of arrays from this one on (of an image with fewer, the last), gl_Layer counted from it; absent: all.
+  // `layers` layers of arrays from this one on (of an image with fewer, the last), gl_Layer counted from it;
+  // absent: all.
   std::optional<uint32_t> layer;
   uint32_t layers = 1;
 };
@@ -148,9 +149,9 @@ class Context {
   void set_cull(VkCullModeFlags mode);
   void set_area(Extent extent);  // viewport and scissor: the target's upper left part, in pixels
   void draw_fullscreen(const Pipeline& pipeline);
-  // Occlusion: reset() outside render(), query() inside it, around draws; then results() to a buffer that the pass
-  // declares transfer_write: two words a query, the number of samples that passed (any number but 0 when the device
-  // only tells whether there are some) and whether the query was answered.
+  // Occlusion: reset() outside render(), query() inside it, around draws; then results() to a buffer that the
+  // pass declares transfer_write: two words a query, the number of samples that passed (any number but 0 when
+  // the device only tells whether there are some) and whether the query was answered.
   void reset(const OcclusionQueries& queries);
   void query(const OcclusionQueries& queries, uint32_t index, const std::function<void()>& draws);
   void results(const OcclusionQueries& queries, uint32_t count, const std::string& buffer_port);

@@ -26,14 +26,15 @@ class LightFit {
   std::vector<FaceFit> still_;  // per light that stands still: of the instances that do
 };
 
-// A face for all samples of an area light: a frustum whose apex may stand anywhere on the light and whose window is
-// moved for each sample so that it holds all receivers of the light's own frustum.
+// A face for all samples of an area light: a frustum whose apex may stand anywhere on the light and whose
+// window is moved for each sample so that it holds all receivers of the light's own frustum.
 struct AreaFace {
-  LightFace face;       // the light's own, widened for the samples; its range holds what any of them can see
-  double converge = 0;  // a sample at x, y of the light's frame has its window's centre at -converge * (x, y), as tangents
+  LightFace face;  // the light's own, widened for the samples; its range holds what any of them can see
+  double converge =
+      0;  // a sample at x, y of the light's frame has its window's centre at -converge * (x, y), as tangents
 };
-// `centre`: the light's own face, of `scene`. Of a light without area, and of faces of other lights than spots: the
-// same face.
+// `centre`: the light's own face, of `scene`. Of a light without area, and of faces of other lights than
+// spots: the same face.
 AreaFace area_face(const Scene& scene, const LightFace& centre);
 
 }  // namespace gnomon

@@ -80,9 +80,10 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
                      settings.camera),
          scene->file.string(), "--camera", "cameras are counted from 0");
   const Camera& camera = scene->cameras[settings.camera];
-  const Declaration::Setting setting{
-      {settings.width, settings.height}, uint32_t(scene->lights.size()), uint32_t(gpu_scene.faces().size()),
-      settings.memory};
+  const Declaration::Setting setting{{settings.width, settings.height},
+                                     uint32_t(scene->lights.size()),
+                                     uint32_t(gpu_scene.faces().size()),
+                                     settings.memory};
   CompileOptions options;
   options.alias = settings.alias;
   options.keep_all = settings.keep_all;

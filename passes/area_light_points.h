@@ -5,12 +5,17 @@
 #include <vector>
 
 #include "engine/scene.h"
+#include "passes/light_quads.h"
 #include "passes/sample_maps.h"
 
 namespace gnomon {
 
 // `n` samples of a light, their weights those of their emission: "sobol" (Owen-scrambled), "grid_centres" or
 // "grid_corners" (n a square). The centre alone when the light has no area.
-std::vector<LightPoint> light_points(const Scene& scene, uint32_t light, uint32_t n, const std::string& pattern);
+std::vector<LightPoint> light_points(const Scene& scene, uint32_t light, uint32_t n,
+                                     const std::string& pattern);
+
+// What a quad-tree asks about an area light. `scene` must outlive it.
+LightSurface light_surface(const Scene& scene, uint32_t light);
 
 }  // namespace gnomon

@@ -7,9 +7,10 @@
 #include "engine/area_light.h"
 #include "engine/context.h"
 #include "engine/error.h"
+#include "passes/area_light_points.h"
 #include "passes/area_words.h"
 #include "passes/divide_up.h"
-#include "passes/light_quads.h"
+#include "passes/map_cache.h"
 #include "passes/pixel_list.h"
 #include "passes/sample_maps.h"
 
@@ -38,29 +39,40 @@ class AreaRefine : public Pass {
   void declare(Declaration& d) const override {
     d.kind(PassKind::mixed);
     d.summary(
-        "Refines the samples of each area light, level by level of a quad-tree, until the camera sees no banding.");
+        "Refines the samples of each area light, level by level of a quad-tree, until the camera sees no "
+        "banding.");
     d.cite("Schwaerzler et al. 2012; Macedo 2018, ch. 6.1.1, algorithm 6, eq. 6.1-6.3, 6.6-6.7");
-    const int64_t levels = d.integer("levels", 4, 0, 5, "1", "how often the light's rectangle may be divided");
-    d.choice("test", "rbsm", {"rbsm", "rpcf", "pcf"},
-             "a sample's visibility: filtered RBSM, RPCF 2x2, or PCF 2x2 (then without soft discontinuities)");
-    d.integer("soft_discontinuity", 2, 0, 4, "samples", "of a quad's four, on whose silhouettes a pixel is smooth");
+    const int64_t levels =
+        d.integer("levels", 4, 0, 5, "1", "how often the light's rectangle may be divided");
+    d.choice(
+        "test", "rbsm", {"rbsm", "rpcf", "pcf"},
+        "a sample's visibility: filtered RBSM, RPCF 2x2, or PCF 2x2 (then without soft discontinuities)");
+    d.integer("soft_discontinuity", 2, 0, 4, "samples",
+              "of a quad's four, on whose silhouettes a pixel is smooth");
     d.integer("max_size", 16, 1, 255, "texels", "longest walk along a silhouette, in each direction");
-    for (const auto& [name, factor, help] : {std::tuple{"window_1", 1, "quads of level 0: every n-th pixel is asked"},
-                                             std::tuple{"window_2", 2, "the same for levels 1 and 2"},
-                                             std::tuple{"window_4", 4, "the same for further levels"}})
+    for (const auto& [name, factor, help] :
+         {std::tuple{"window_1", 1, "quads of level 0: every n-th pixel is asked"},
+          std::tuple{"window_2", 2, "the same for levels 1 and 2"},
+          std::tuple{"window_4", 4, "the same for further levels"}})
       d.integer(name, factor, 1, 31, "pixels", help);
     d.choice("order", "breadth_first", {"breadth_first", "depth_first"},
              "a level's quads together, or one by one as in the paper; the samples are the same");
     d.choice("weights", "area", {"area", "leaf", "creation"},
              "of the samples: their leaves' areas, or (6.5) by the finest leaf or by the level of creation");
     const uint32_t wanted = d.setting().lights * divide_up(most_samples(levels), kWordSamples) * kWordSamples;
-    const ImageShape visibility = SampleMaps::declare(d, kWordSamples, false);
+    const bool cache =
+        d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
+    constexpr double kShare = 0.25;  // of the memory limit: area_words.cpp takes the rest
+    const ImageShape visibility = SampleMaps::declare(d, cache ? wanted : kWordSamples, cache, kShare);
     declare_sample_outputs(d, visibility.extent, wanted);
     d.output_buffer("answers", Access::transfer_write | Access::host_read,
                     {uint64_t(2) * d.setting().lights * most_questions(levels), 4, "uint"},
                     "of each quad asked about: pixels with banding, and whether the query was answered");
     d.transient("window", Access::color, false,
-                {{divide_up(visibility.extent.width, kWordSamples), visibility.extent.height}, 1, 1, VK_FORMAT_R8_UNORM},
+                {{divide_up(visibility.extent.width, kWordSamples), visibility.extent.height},
+                 1,
+                 1,
+                 VK_FORMAT_R8_UNORM},
                 "what the queries are drawn over; nothing is written");
     declare_pixel_list(d, visibility.extent, "pixels on a silhouette of the samples at hand");
   }
@@ -81,9 +93,14 @@ class AreaRefine : public Pass {
     queries_ = e.occlusion_queries(lights * most_questions(p.integer("levels")));
     place_lights(e);
     maps_.prepare(e, slots_ * kMostFaces);
+    batch_ = std::min(maps_.layers(), kWordSamples);
+    cache_.resize(maps_.layers(), p.flag("cache") ? batch_ : maps_.layers());
+    if (p.flag("cache") && maps_.layers() <= batch_)
+      e.warn("cache: the memory limit leaves no room for kept maps");
     weights_kind_ = SampleWeights(p.choice_index("weights"));
     order_ = QuadOrder(p.choice_index("order"));
-    windows_ = {uint32_t(p.integer("window_1")), uint32_t(p.integer("window_2")), uint32_t(p.integer("window_4"))};
+    windows_ = {uint32_t(p.integer("window_1")), uint32_t(p.integer("window_2")),
+                uint32_t(p.integer("window_4"))};
   }
 
   void record(Context& c) override {
@@ -115,7 +132,11 @@ class AreaRefine : public Pass {
       if (light.tree) level = std::max(level, double(light.tree->deepest_level()));
       full += light.full ? 1 : 0;
     }
-    return {{"light_samples", samples}, {"levels", level}, {"host_waits", turns_}, {"lights_cut_by_memory", full}};
+    return {{"light_samples", samples},
+            {"levels", level},
+            {"host_waits", turns_},
+            {"maps_rendered", maps_rendered_},
+            {"lights_cut_by_memory", full}};
   }
 
  private:
@@ -134,8 +155,8 @@ class AreaRefine : public Pass {
     for (const Light& light : scene.lights) areas += shines_as_area(light) ? 1 : 0;
     const uint32_t points = uint32_t(scene.lights.size()) - areas, words = slots_ / kWordSamples;
     if (words < points + areas)
-      fail(fmt::format("{} lights at this size need more memory than the limit", scene.lights.size()), {}, e.id(),
-           "raise --memory or render a smaller image");
+      fail(fmt::format("{} lights at this size need more memory than the limit", scene.lights.size()), {},
+           e.id(), "raise --memory or render a smaller image");
     const uint32_t share = areas > 0 ? (words - points) / areas : 0;
     const uint32_t most = most_samples(e.params().integer("levels"));
     uint32_t first = 0;
@@ -150,7 +171,10 @@ class AreaRefine : public Pass {
 
   void begin(Context& c) {
     maps_.begin(c);
-    turns_ = 0;
+    turns_ = maps_rendered_ = 0;
+    for (uint32_t face = 0; face < c.scene().faces().size(); ++face)
+      if (c.scene().light_changed(c.scene().faces()[face].light)) cache_.forget(face);
+    if (c.scene().casters_changed()) cache_.forget();
     const Scene& scene = c.scene().scene();
     for (uint32_t i = 0; i < lights_.size(); ++i) {
       LightState& light = lights_[i];
@@ -158,28 +182,10 @@ class AreaRefine : public Pass {
       light.full = false;
       light.tree.reset();
       if (light.needed && shines_as_area(scene.lights[i]))
-        light.tree.emplace(uint32_t(c.params().integer("levels")), order_, surface_of(scene, *scene.lights[i].area));
+        light.tree.emplace(uint32_t(c.params().integer("levels")), order_, light_surface(scene, i));
+      if (light.tree && light.tree->samples().empty())
+        light.tree.reset();  // no point of the grid is on it: its centre
     }
-  }
-
-  // What the tree asks about a light of this shape.
-  static LightSurface surface_of(const Scene& scene, const AreaLight& area) {
-    if (area.shape == AreaLight::Shape::rectangle && !area.emission) return whole_rectangle();
-    return {[&area](glm::dvec2 u) { return on_light(area, place_on(area, u)); },
-            [&scene, &area](glm::dvec2 min, glm::dvec2 max) { return power_of(scene, area, min, max); }};
-  }
-
-  // Emission times area of a part, as share of the rectangle's; how much of it is on the light by a grid of points.
-  static double power_of(const Scene& scene, const AreaLight& area, glm::dvec2 min, glm::dvec2 max) {
-    constexpr int kPoints = 16;  // a side
-    double on = 0;
-    for (int y = 0; y < kPoints; ++y)
-      for (int x = 0; x < kPoints; ++x)
-        on += on_light(area, place_on(area, glm::mix(min, max, (glm::dvec2(x, y) + 0.5) / double(kPoints))));
-    const double share = on / (kPoints * kPoints);
-    const double emission =
-        area.emission ? emission_weight(emission_in(scene, area, place_on(area, min), place_on(area, max))) : 1.0;
-    return share * emission * (max.x - min.x) * (max.y - min.y);
   }
 
   // --- a turn: new samples ---
@@ -188,10 +194,9 @@ class AreaRefine : public Pass {
     LightState& light = lights_[index];
     const uint32_t count = light.tree ? uint32_t(light.tree->samples().size()) : 1;
     const uint32_t from = light.rendered;
-    for (const uint32_t face : light.faces) write(c, light, face, from, count);
     for (uint32_t at = from; at < count;) {
       const uint32_t bit = at % kWordSamples;
-      const uint32_t batch = std::min({count - at, kWordSamples - bit, maps_.layers()});
+      const uint32_t batch = std::min({count - at, kWordSamples - bit, batch_});
       for (const uint32_t face : light.faces) evaluate(c, index, face, at, batch);
       at += batch;
     }
@@ -200,17 +205,33 @@ class AreaRefine : public Pass {
 
   // Where a face's sample is in the buffer of samples.
   uint32_t sample_index(const LightState& light, uint32_t face, uint32_t sample) const {
-    const auto which = uint32_t(std::find(light.faces.begin(), light.faces.end(), face) - light.faces.begin());
+    const auto which =
+        uint32_t(std::find(light.faces.begin(), light.faces.end(), face) - light.faces.begin());
     return which * slots_ + light.first + sample;
   }
 
-  void write(Context& c, const LightState& light, uint32_t face, uint32_t from, uint32_t to) {
+  // Where samples [at, at + count) are on the light, local.
+  static std::vector<glm::dvec2> places(const Context& c, const LightState& light, uint32_t face, uint32_t at,
+                                        uint32_t count) {
+    if (!light.tree) return {glm::dvec2(0.0)};
+    const AreaLight& area = *c.scene().scene().lights[c.scene().faces()[face].light].area;
+    std::vector<glm::dvec2> places;
+    for (uint32_t i = at; i < at + count; ++i) places.push_back(place_on(area, light.tree->samples()[i]));
+    return places;
+  }
+
+  // Those maps that are not there yet.
+  void render(Context& c, const LightState& light, uint32_t face, uint32_t at, uint32_t count) {
+    const std::vector<glm::dvec2> locals = places(c, light, face, at, count);
+    const MapCache::Placed placed = cache_.place(face, locals);
     std::vector<LightPoint> points;
-    for (uint32_t i = from; i < to; ++i) {
-      const Light& source = c.scene().scene().lights[c.scene().faces()[face].light];
-      points.push_back({light.tree ? place_on(*source.area, light.tree->samples()[i]) : glm::dvec2(0.0), 1.0});
+    for (size_t i = 0; i < locals.size(); ++i) points.push_back({locals[i], 1.0, placed.layers[i]});
+    const uint32_t first = sample_index(light, face, at);
+    maps_.write(c, face, first, points);
+    for (const MapCache::Run& run : placed.missing) {
+      maps_.render(c, face, first + run.first, run.count, run.layer);
+      maps_rendered_ += run.count;
     }
-    maps_.write(c, face, sample_index(light, face, from), points);
   }
 
   // Maps of up to a word's samples, and all that is kept of them.
@@ -219,7 +240,7 @@ class AreaRefine : public Pass {
     const uint32_t first = sample_index(light, face, at), slot = light.first + at;
     const uint32_t word = slot / kWordSamples, bit = slot % kWordSamples;
     c.section("maps");
-    if (light.needed) maps_.render(c, face, first, count, 0);
+    if (light.needed) render(c, light, face, at, count);
     clear_pixel_list(c);
     c.own_barrier();
     c.section("discontinuities");
@@ -290,7 +311,8 @@ class AreaRefine : public Pass {
     for (const LightState& light : lights_) {
       *range++ = light.first;
       *range++ = light.rendered;
-      const std::vector<double> all = light.tree ? light.tree->weights(weights_kind_) : std::vector<double>{1.0};
+      const std::vector<double> all =
+          light.tree ? light.tree->weights(weights_kind_) : std::vector<double>{1.0};
       std::copy(all.begin(), all.end(), weight + light.first);
     }
   }
@@ -303,8 +325,9 @@ class AreaRefine : public Pass {
   std::array<uint32_t, 3> windows_{};
   SampleWeights weights_kind_ = SampleWeights::area;
   QuadOrder order_ = QuadOrder::breadth_first;
-  uint32_t slots_ = 0, asked_ = 0;
-  double turns_ = 0;
+  MapCache cache_;
+  uint32_t slots_ = 0, asked_ = 0, batch_ = 0;  // batch: samples at a time
+  double turns_ = 0, maps_rendered_ = 0;
 };
 
 GNOMON_PASS("area_refine", AreaRefine);

@@ -34,7 +34,9 @@ void declare_filter(Declaration& d) {
   d.number("max_radius", 64, 0, 4096, "pixels", "largest radius of the filter");
   d.number("neighbour_tolerance", 0.01, 1e-6, 1, "view depth",
            "difference to a pixel's tangent plane within which a neighbour is of the same surface (5.18)");
-  d.number("least_tests", 16, 1, 4096, "1", "tests below which the filter alone counts");
+  d.number("least_tests", 4, 1, 4096, "1",
+           "tests below which the filter alone counts: 16 are advised for random points, stratified ones "
+           "tell sooner");
   const double low =
       d.number("s_min", 0.02, 0, 1, "visibility", "standard error up to which the tests alone count");
   const double high =
@@ -57,7 +59,7 @@ class AreaTemporal : public Pass {
     const ImageShape visibility = SampleMaps::declare(d, kMapLayers, false);
     ImageShape buffer = visibility;
     buffer.format = VK_FORMAT_R32G32B32A32_SFLOAT;
-    d.input("history", Access::sampled, true, "`shadow_buffer` of the frame before");
+    d.input("history", Access::storage_read, true, "`shadow_buffer` of the frame before");
     declare_history(d);
     declare_filter(d);
     constexpr Access kBoth = Access::storage_read | Access::storage_write;

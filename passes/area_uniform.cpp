@@ -27,7 +27,8 @@ class AreaUniform : public Pass {
         d.choice("pattern", "grid_corners", {"grid_corners", "grid_centres", "sobol"},
                  "a regular grid with or without its end points, or Owen-scrambled Sobol points");
     if (pattern != "sobol" && !is_square(n)) d.refuse("samples", "a square number for a grid");
-    const bool cache = d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
+    const bool cache =
+        d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
     const ImageShape visibility = SampleMaps::declare(d, uint32_t(n) * d.setting().map_faces, cache);
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
@@ -38,12 +39,13 @@ class AreaUniform : public Pass {
     needed_ = casts_shadow_in_view(e);
     const auto& faces = e.gpu_scene().faces();
     uint32_t capacity = 0;
-    for (const LightFace& face : faces) capacity += uint32_t(points(e.scene(), e.params(), face.light).size());
+    for (const LightFace& face : faces)
+      capacity += uint32_t(points(e.scene(), e.params(), face.light).size());
     maps_.prepare(e, capacity);
     cached_ = e.params().flag("cache") && capacity <= maps_.layers();
     if (e.params().flag("cache") && !cached_)
-      e.warn("cache: the memory limit holds " + std::to_string(maps_.layers()) + " of " + std::to_string(capacity) +
-             " maps: none is kept");
+      e.warn("cache: the memory limit holds " + std::to_string(maps_.layers()) + " of " +
+             std::to_string(capacity) + " maps: none is kept");
   }
 
   void record(Context& c) override {
@@ -96,7 +98,7 @@ class AreaUniform : public Pass {
   // Without samples: nothing shadows the light's receivers.
   void test(Context& c, uint32_t face, const Batch& batch, uint32_t part, float total) {
     c.section("test");
-    const AreaPush push{c.scene().faces()[face].light, face, batch.first, batch.count, batch.layer, 0,
+    const AreaPush push{c.scene().faces()[face].light,         face, batch.first, batch.count, batch.layer, 0,
                         {part, std::bit_cast<uint32_t>(total)}};
     c.dispatch_over(test_.ready(c, push), c.shape("visibility").extent);
     c.own_barrier();

@@ -43,9 +43,11 @@ void declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted) {
 Extent declare_sample_inputs(Declaration& d) {
   d.input_buffer("lit_words", Access::storage_read, "a bit a sample: is the pixel lit from it");
   d.input_buffer("edge_words", Access::storage_read, "a bit a sample: is the pixel on its silhouette");
-  const ImageShape values = d.input("values", Access::storage_read, true, "visibility of the pixels on silhouettes");
+  const ImageShape values =
+      d.input("values", Access::storage_read, true, "visibility of the pixels on silhouettes");
   d.input_buffer("weights", Access::storage_read, "of each sample");
-  d.input_buffer("sample_ranges", Access::storage_read, "of each light, its first slot and the number of its samples");
+  d.input_buffer("sample_ranges", Access::storage_read,
+                 "of each light, its first slot and the number of its samples");
   return values.extent;
 }
 

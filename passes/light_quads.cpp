@@ -10,7 +10,9 @@ namespace {
 constexpr std::array<glm::uvec2, 4> kCorners = {glm::uvec2{0, 0}, {1, 0}, {0, 1}, {1, 1}};
 constexpr uint32_t kOffLight = ~0u;
 
-glm::dvec2 place_of(const glm::uvec2& point, uint32_t level) { return glm::dvec2(point) / double(1u << level); }
+glm::dvec2 place_of(const glm::uvec2& point, uint32_t level) {
+  return glm::dvec2(point) / double(1u << level);
+}
 
 }  // namespace
 
@@ -60,11 +62,12 @@ bool LightQuads::touches_light(const Quad& quad) const {
 }
 
 void LightQuads::children(const Quad& quad, std::vector<Quad>& into) const {
-  for (const glm::uvec2& corner : kCorners) into.push_back({quad.level + 1, 2u * quad.corner + corner, {}, {}});
+  for (const glm::uvec2& corner : kCorners)
+    into.push_back({quad.level + 1, 2u * quad.corner + corner, {}, {}});
 }
 
-// A quad without a corner on the light cannot be asked about: it is divided as long as it holds a part of the light. So
-// is a large one of which one or two corners are: their answers say little about the rest.
+// A quad without a corner on the light cannot be asked about: it is divided as long as it holds a part of the
+// light. So is a large one of which one or two corners are: their answers say little about the rest.
 void LightQuads::open(const Quad& asked) {
   constexpr uint32_t kAskedFrom = 2;  // level
   constexpr uint32_t kEnough = 3;     // corners
@@ -116,7 +119,8 @@ std::vector<double> LightQuads::weights(SampleWeights kind) const {
   std::vector<double> weights(places_.size(), 0.0);
   std::vector<uint32_t> finest(places_.size(), 0);
   for (const Quad& leaf : leaves_) {
-    const double power = surface_.power(place_of(leaf.corner, leaf.level), place_of(leaf.corner + 1u, leaf.level));
+    const double power =
+        surface_.power(place_of(leaf.corner, leaf.level), place_of(leaf.corner + 1u, leaf.level));
     const auto corners = double(std::count(leaf.on.begin(), leaf.on.end(), true));
     for (size_t i = 0; i < 4; ++i) {
       if (!leaf.on[i]) continue;

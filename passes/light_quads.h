@@ -13,8 +13,9 @@ namespace gnomon {
 
 // What the tree has to know of its light. Places are in [0, 1]^2 over the light's bounding rectangle.
 struct LightSurface {
-  std::function<bool(glm::dvec2)> holds;                       // is a place on the light?
-  std::function<double(glm::dvec2 min, glm::dvec2 max)> power;  // emission of a part: its area on the light, weighted
+  std::function<bool(glm::dvec2)> holds;  // is a place on the light?
+  std::function<double(glm::dvec2 min, glm::dvec2 max)>
+      power;  // emission of a part: its area on the light, weighted
 };
 LightSurface whole_rectangle();
 
@@ -33,9 +34,10 @@ class LightQuads {
  public:
   struct Quad {
     uint32_t level = 0;
-    glm::uvec2 corner{0};               // lower corner, on a grid of 2^level cells a side
-    std::array<uint32_t, 4> samples{};  // at its corners (0,0) (1,0) (0,1) (1,1); where one is off the light, another's
-    std::array<bool, 4> on{};           // is the corner on the light?
+    glm::uvec2 corner{0};  // lower corner, on a grid of 2^level cells a side
+    std::array<uint32_t, 4>
+        samples{};  // at its corners (0,0) (1,0) (0,1) (1,1); where one is off the light, another's
+    std::array<bool, 4> on{};  // is the corner on the light?
   };
 
   // `levels`: how often a quad may be divided, 0..5: at most (2^levels + 1)^2 samples.

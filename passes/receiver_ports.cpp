@@ -56,7 +56,7 @@ int64_t declare_kernel(Declaration& d) {
   return width;
 }
 
-void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines) {
+void LightPipelines::prepare(Environment& e, const std::string& file, const Defines& defines) {
   for (const Light& light : e.scene().lights) {
     const bool point = light.type == LightType::point;
     Pipeline& pipeline = point ? six_faces_ : one_face_;
@@ -67,12 +67,15 @@ void PerLight::prepare(Environment& e, const std::string& file, const Defines& d
   }
 }
 
+const Pipeline& LightPipelines::of(const Context& c, uint32_t light) const {
+  return c.scene().scene().lights[light].type == LightType::point ? six_faces_ : one_face_;
+}
+
 const Pipeline& PerLight::ready(Context& c, uint32_t light, std::array<uint32_t, 2> part) const {
   const auto& faces = c.scene().faces();
   uint32_t first = 0;
   while (first < faces.size() && faces[first].light != light) ++first;
-  const bool point = c.scene().scene().lights[light].type == LightType::point;
-  const Pipeline& pipeline = point ? six_faces_ : one_face_;
+  const Pipeline& pipeline = pipelines_.of(c, light);
   c.push(pipeline, std::array<uint32_t, 4>{light, first, part[0], part[1]});
   return pipeline;
 }

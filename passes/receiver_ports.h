@@ -20,10 +20,23 @@ ImageShape declare_receiver(Declaration& d);
 // Parameter `kernel`: width of a filter in the shadow map, odd, in texels.
 int64_t declare_kernel(Declaration& d);
 
+// One compute shader in two forms: for lights of one face, and (SIX_FACES) for those whose pixels find
+// theirs.
+class LightPipelines {
+ public:
+  void prepare(Environment& e, const std::string& file, const Defines& defines = {});
+  const Pipeline& of(const Context& c, uint32_t light) const;
+
+ private:
+  Pipeline one_face_, six_faces_;  // only those that the scene's lights need
+};
+
 // A compute shader that includes shadow_query.glsl, run for one light at a time.
 class PerLight {
  public:
-  void prepare(Environment& e, const std::string& file, const Defines& defines = {});
+  void prepare(Environment& e, const std::string& file, const Defines& defines = {}) {
+    pipelines_.prepare(e, file, defines);
+  }
   void dispatch_over(Context& c, uint32_t light, Extent pixels) const;
   // One invocation per pixel of `visibility`, light by light.
   void dispatch_all(Context& c) const;
@@ -34,7 +47,7 @@ class PerLight {
  private:
   const Pipeline& ready(Context& c, uint32_t light,
                         std::array<uint32_t, 2> part = {}) const;  // push constants too
-  Pipeline one_face_, six_faces_;                                  // only those that the scene's lights need
+  LightPipelines pipelines_;
 };
 
 // Puts the biases' size in world units into run.json, at the middle of each map face's depth range.

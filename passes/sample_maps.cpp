@@ -25,14 +25,15 @@ glm::dvec3 offset_in(const Scene& scene, const LightFace& face, const glm::dvec2
 
 }  // namespace
 
-ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache) {
+ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache, double share) {
   const ImageShape depth = d.input("depth", Access::sampled, false, "the camera's device depth");
   d.input("geometric", Access::sampled, false, "octahedral geometric normal");
-  const uint32_t size = uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each sample's shadow map"));
+  const uint32_t size =
+      uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each sample's shadow map"));
   d.number("bias_constant", 0.5, 0, 1000, "texels", "shift of the receiver's plane towards the light");
   d.number("bias_slope", 0.2, 0, 1000, "texels", "further shift, times the plane's slope");
   constexpr uint64_t kTexelBytes = 4;
-  const uint64_t fitting = d.setting().memory / (kTexelBytes * size * size);
+  const auto fitting = uint64_t(share * double(d.setting().memory)) / (kTexelBytes * size * size);
   const uint32_t most = cache ? wanted : std::min(wanted, kMostLayers);
   const uint32_t layers = uint32_t(std::clamp<uint64_t>(fitting, 1, most));
   const ImageShape maps{{size, size}, layers, 1, VK_FORMAT_D32_SFLOAT};
@@ -86,7 +87,7 @@ void SampleMaps::write(const Context& c, uint32_t face, uint32_t first, std::spa
   for (const LightPoint& point : points) {
     const glm::dvec3 offset = offset_in(c.scene().scene(), c.scene().faces()[face], point.local);
     out->offset_weight = glm::vec4(offset, point.weight);
-    (out++)->window = glm::vec4(-converge_[face] * glm::dvec2(offset), 0.0, 0.0);
+    (out++)->window = glm::vec4(-converge_[face] * glm::dvec2(offset), point.layer, 0.0);
   }
 }
 
@@ -114,24 +115,6 @@ std::vector<bool> casts_shadow_in_view(const Environment& e) {
   const SceneFacts facts = scene_facts(e.scene(), camera, aspect);
   if (e.settings().keep_all || facts.animated) return std::vector<bool>(e.scene().lights.size(), true);
   return facts.casts_visible_shadow;
-}
-
-void AreaShader::prepare(Environment& e, const std::string& file, const Defines& defines) {
-  for (const Light& light : e.scene().lights) {
-    const bool point = light.type == LightType::point;
-    Pipeline& pipeline = point ? six_faces_ : one_face_;
-    if (pipeline.handle) continue;
-    Defines all = defines;
-    if (point) all.emplace_back("SIX_FACES", "1");
-    pipeline = e.compute(file, all);
-  }
-}
-
-const Pipeline& AreaShader::ready(Context& c, const AreaPush& push) const {
-  const bool point = c.scene().scene().lights[push.light].type == LightType::point;
-  const Pipeline& pipeline = point ? six_faces_ : one_face_;
-  c.push(pipeline, push);
-  return pipeline;
 }
 
 }  // namespace gnomon

@@ -1,5 +1,5 @@
-// Shadow maps of an area light's samples, layer by layer, as shaders/glsl/light_samples.glsl and area_query.glsl see
-// them.
+// Shadow maps of an area light's samples, layer by layer, as shaders/glsl/light_samples.glsl and
+// area_query.glsl see them.
 #pragma once
 
 #include <array>
@@ -9,12 +9,14 @@
 
 #include "engine/context.h"
 #include "engine/pass.h"
+#include "passes/receiver_ports.h"
 
 namespace gnomon {
 
 struct LightPoint {  // a sample
   glm::dvec2 local;  // on the light, its own x and y in world units
   double weight = 1;
+  uint32_t layer = 0;  // of its map, where a pass does not push it
 };
 
 class SampleMaps {
@@ -22,10 +24,11 @@ class SampleMaps {
   // Samples whose bits fit a word of shaders; more are never rendered at a time.
   static constexpr uint32_t kMostLayers = 32;
 
-  // Inputs `depth`, `geometric`; parameters `size`, `bias_constant`, `bias_slope`; transients `maps`, `areas`,
-  // `samples`. The maps take as much of the memory limit as they can use: `wanted` layers at most, all of them kept
-  // from frame to frame when `cache`. Returns the shape of a visibility image: one layer a light.
-  static ImageShape declare(Declaration& d, uint32_t wanted, bool cache);
+  // Inputs `depth`, `geometric`; parameters `size`, `bias_constant`, `bias_slope`; transients `maps`,
+  // `areas`, `samples`. The maps take as much of the memory limit as they can use: `wanted` layers at most,
+  // all of them kept from frame to frame when `cache`. `share`: of the limit. Returns the shape of a
+  // visibility image: one layer a light.
+  static ImageShape declare(Declaration& d, uint32_t wanted, bool cache, double share = 1);
 
   // `capacity`: samples at most, over all lights. `split`: render_split() is used instead of render().
   void prepare(Environment& e, uint32_t capacity, bool split = false);
@@ -36,7 +39,8 @@ class SampleMaps {
   uint32_t layers() const { return layers_; }
   // Renders samples [first, first + count) of a face to layers from `layer` on, keeping the others.
   void render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer);
-  // Renders one sample of a face: what stands still to layer 0, instances that some animation moves to layer 1.
+  // Renders one sample of a face: what stands still to layer 0, instances that some animation moves to
+  // layer 1.
   void render_split(Context& c, uint32_t face, uint32_t sample);
 
  private:
@@ -49,8 +53,8 @@ class SampleMaps {
   uint32_t layers_ = 0;
 };
 
-// Per light: can a caster's shadow of it be in view (SceneFacts)? Where not, no map is needed. All, where the scene
-// moves or nothing is to be left out.
+// Per light: can a caster's shadow of it be in view (SceneFacts)? Where not, no map is needed. All, where the
+// scene moves or nothing is to be left out.
 std::vector<bool> casts_shadow_in_view(const Environment& e);
 
 // What area_query.glsl is pushed.
@@ -62,11 +66,17 @@ struct AreaPush {
 // A compute shader that includes area_query.glsl.
 class AreaShader {
  public:
-  void prepare(Environment& e, const std::string& file, const Defines& defines = {});
-  const Pipeline& ready(Context& c, const AreaPush& push) const;  // pushed
+  void prepare(Environment& e, const std::string& file, const Defines& defines = {}) {
+    pipelines_.prepare(e, file, defines);
+  }
+  const Pipeline& ready(Context& c, const AreaPush& push) const {  // pushed
+    const Pipeline& pipeline = pipelines_.of(c, push.light);
+    c.push(pipeline, push);
+    return pipeline;
+  }
 
  private:
-  Pipeline one_face_, six_faces_;  // only those that the scene's lights need
+  LightPipelines pipelines_;
 };
 
 }  // namespace gnomon

@@ -81,11 +81,13 @@ int run(int argc, const char* const* argv) {
   add_reference(app, status);
   add_compare(app, status);
   add_bench(app, status);
+  add_report(app, status);
   add_explain(app, status);
   add_check(app, status);
   add_list(app, status);
   add_scene(app, status);
   add_edt(app, status);
+  add_stability(app, status);
   const int parsed = parse(app, argc, argv);
   return parsed == exit_done ? status : parsed;
 }

@@ -40,6 +40,8 @@ void add_list(CLI::App& app, int& status);
 void add_explain(CLI::App& app, int& status);
 void add_scene(CLI::App& app, int& status);
 void add_edt(CLI::App& app, int& status);
+void add_stability(CLI::App& app, int& status);
+void add_report(CLI::App& app, int& status);
 
 // ---- what several commands share ----
 

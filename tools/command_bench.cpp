@@ -28,7 +28,7 @@ struct Options {
   std::string suite, shard = "1/1";
   fs::path out, json_file;
   DeviceFlags device;
-  bool resume = false, overwrite = false;
+  bool resume = false, overwrite = false, images = false;
   uint32_t repeat = 0;
 };
 
@@ -65,6 +65,7 @@ int bench_command(const Options& options) {
   Suite suite = load_suite(find_suite(options.suite));
   if (options.repeat > 0) suite.repeat = options.repeat;
   suite.memory = options.device.memory;
+  suite.images = suite.images || options.images;
   for (const std::string& notice : suite.notices) fmt::print(stderr, "gnomon: note: {}\n", notice);
 
   BenchOptions bench;
@@ -81,7 +82,7 @@ int bench_command(const Options& options) {
   double share = 0;
   bench.progress = [&](double now, const std::string& note) { progress.update(share = now, note); };
   const auto tracing = [&](double, const std::string& note) { progress.update(share, note); };
-  const BenchResult result = run_suite(suite, bench, device_stages(device, cache_folder(), tracing));
+  const BenchResult result = run_suite(suite, bench, device_stages(device, cache_folder(), tracing, bench.out));
   progress.done();
 
   const std::vector<json> rows = read_results(result.results);
@@ -121,6 +122,8 @@ void add_bench(CLI::App& app, int& status) {
   command->add_option("--repeat", options->repeat, "timed rounds, instead of the suite's")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
+  command->add_flag("--images", options->images,
+                    "write each row's images into DIR/images, for 'gnomon report' to compare");
   add_device_options(*command, options->device);
   command->footer(
       R"(The techniques run in turn (A B C A B C ...), so that a slow spell of the machine hits all of them; 'ratio' is the

@@ -36,7 +36,7 @@ void main() {
     LightSample s = light_sample(push.first + i);
     Receiver plane = plane_in(receiver, s);
     bool edge;
-    bool seen = sample_lit(receiver, plane, int(push.layer + i), edge);
+    bool seen = sample_lit(receiver, plane, s.layer, edge);
     bool towards = faces_sample(receiver.face, s, receiver.q, receiver.n);
     lit |= uint(seen && towards) << i;
     edges |= uint(edge && towards) << i;

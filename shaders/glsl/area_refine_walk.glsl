@@ -48,8 +48,9 @@ void main() {
   while (left != 0u) {
     uint i = uint(findLSB(left));
     left &= left - 1u;
-    plane = plane_in(receiver, light_sample(push.first + i));
-    layer = int(push.layer + i);
+    LightSample s = light_sample(push.first + i);
+    plane = plane_in(receiver, s);
+    layer = s.layer;
     imageStore(values, ivec3(at, 32u * push.part.x + push.bit + i), vec4(sample_visibility()));
   }
 }

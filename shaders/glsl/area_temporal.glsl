@@ -13,7 +13,7 @@ ShadowHistory reproject(vec3 p, vec3 n, float depth) {
   vec3 place = previous_image_place(p);
   vec2 corner = round((place.xy - 0.5) * SUBPIXELS) / SUBPIXELS, low = floor(corner), part = corner - low;
   vec2 gradient = depth_gradient(p, n, depth);
-  ivec2 size = textureSize(history, 0).xy;
+  ivec2 size = imageSize(history).xy;
   bool visible = place.z > 0.0 && all(greaterThan(corner, vec2(-1.0))) && all(lessThan(corner, vec2(size)));
   if (!visible) low = vec2(0.0);
   float overlap = 0.0, blockers = 0.0, blocker = 0.0;
@@ -22,7 +22,7 @@ ShadowHistory reproject(vec3 p, vec3 n, float depth) {
     ivec2 texel = ivec2(low + step);
     vec2 share = mix(1.0 - part, part, step);
     bool inside = visible && all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, size));
-    ShadowHistory h = unpack_history(history_at(clamp(texel, ivec2(0), size - 1), int(push.light)));
+    ShadowHistory h = unpack_history(imageLoad(history, ivec3(clamp(texel, ivec2(0), size - 1), push.light)));
     float expected = place.z / (1.0 + dot(gradient, low + step - corner));
     float weight = share.x * share.y;
     if (!inside || h.tests <= 0.0 || !same_depth(expected, h.depth, params.depth_tolerance)) weight = 0.0;
@@ -46,7 +46,7 @@ ShadowHistory previous_history(ivec2 at, vec3 n) {
 #ifdef CAMERA_MOVED
   return reproject(relative_position(at, device_depth), n, depth);
 #else
-  ShadowHistory h = unpack_history(vec4(1,3,2,1));
+  ShadowHistory h = unpack_history(imageLoad(history, ivec3(at, push.light)));
   if (h.tests <= 0.0 || !same_depth(depth, h.depth, params.depth_tolerance)) return no_history(depth);
   h.depth = depth;
   return h;

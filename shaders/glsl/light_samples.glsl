@@ -16,5 +16,5 @@ LightFace area_face(uint i) {
 
 LightSample light_sample(uint i) {
   vec4 place = samples[2u * i], rest = samples[2u * i + 1u];
-  return LightSample(place.xyz, rest.xy, place.w);
+  return LightSample(place.xyz, rest.xy, place.w, int(rest.z));
 }

@@ -29,13 +29,14 @@ Scene overhead(const AreaLight& area) {
   return analytic::square_over_plane(light);
 }
 
-// Share of the light that a point of the plane sees: the blocker, projected from the point to the light's plane, is a
-// square, and covers a rectangle of the light.
+// Share of the light that a point of the plane sees: the blocker, projected from the point to the light's
+// plane, is a square, and covers a rectangle of the light.
 double visible_share(double x, double z) {
   const double scale = kLightHeight / analytic::blocker_height;
   const auto covered = [&](double at) {
     const double centre = at - at * scale, half = analytic::blocker_half * scale;
-    const double low = std::max(centre - half, -0.5 * kLightSide), high = std::min(centre + half, 0.5 * kLightSide);
+    const double low = std::max(centre - half, -0.5 * kLightSide),
+                 high = std::min(centre + half, 0.5 * kLightSide);
     return std::max(high - low, 0.0) / kLightSide;
   };
   return 1 - covered(x) * covered(z);
@@ -47,7 +48,8 @@ struct Sampled {
   std::vector<std::string> warnings;
 };
 
-Sampled sample(const std::string& graph, const Scene& scene, const RenderSettings& s, const Values& set = {}) {
+Sampled sample(const std::string& graph, const Scene& scene, const RenderSettings& s,
+               const Values& set = {}) {
   const size_t messages = validation_messages(*device()).size();
   Renderer renderer(device(), std::make_shared<Scene>(scene), load_graph(find_graph(graph), set), s);
   Sampled result;
@@ -91,13 +93,14 @@ double rmse_to_closed_form(const std::vector<float>& v, const Scene& scene, cons
   return std::sqrt(sum / double(count));
 }
 
-// Sampling error of n points: the penumbra of a separable blocker is a product of two steps; a stratified estimate errs by at
-// most about 1/sqrt(n) a side, and the map's texels add theirs.
+// Sampling error of n points: the penumbra of a separable blocker is a product of two steps; a stratified
+// estimate errs by at most about 1/sqrt(n) a side, and the map's texels add theirs.
 TEST(AreaLights, PenumbraOfASquareHasTheClosedForm) {
   const Scene scene = overhead(square_light(kLightSide));
   const RenderSettings s = settings(true);
-  const Sampled result = sample("area_uniform", scene, s,
-                                {{"samples", int64_t{4096}}, {"pattern", "sobol"}, {"shadow_map", int64_t{512}}});
+  const Sampled result =
+      sample("area_uniform", scene, s,
+             {{"samples", int64_t{4096}}, {"pattern", "sobol"}, {"shadow_map", int64_t{512}}});
   EXPECT_EQ(result.facts.at("light.light_samples"), 4096);
   EXPECT_LT(rmse_to_closed_form(result.first, scene, s), 0.006);
   EXPECT_EQ(result.first, result.second);
@@ -108,7 +111,8 @@ TEST(AreaLights, ErrorFallsWithTheNumberOfSamples) {
   const RenderSettings s = settings(true);
   double before = 1;
   for (const int64_t n : {4, 16, 64, 256}) {
-    const Sampled result = sample("area_uniform", scene, s, {{"samples", n}, {"pattern", "sobol"}, {"shadow_map", int64_t{2048}}});
+    const Sampled result = sample("area_uniform", scene, s,
+                                  {{"samples", n}, {"pattern", "sobol"}, {"shadow_map", int64_t{2048}}});
     const double error = rmse_to_closed_form(result.first, scene, s);
     EXPECT_LT(error, 0.75 * before) << n;
     before = error;
@@ -132,7 +136,8 @@ TEST(AreaLights, BothOrdersOfRefinementSelectTheSameSamples) {
   const Scene scene = overhead(square_light(2.5));
   const RenderSettings s = settings(true);
   const Sampled breadth = sample("area_adaptive_rb", scene, s, {{"levels", int64_t{3}}});
-  const Sampled depth = sample("area_adaptive_rb", scene, s, {{"levels", int64_t{3}}, {"order", "depth_first"}});
+  const Sampled depth =
+      sample("area_adaptive_rb", scene, s, {{"levels", int64_t{3}}, {"order", "depth_first"}});
   EXPECT_EQ(breadth.facts.at("refine.light_samples"), depth.facts.at("refine.light_samples"));
   EXPECT_GT(depth.facts.at("refine.host_waits"), breadth.facts.at("refine.host_waits"));
   for (size_t i = 0; i < breadth.first.size(); ++i) ASSERT_NEAR(breadth.first[i], depth.first[i], 1e-5) << i;
@@ -215,7 +220,8 @@ TEST(AreaLights, RefinementStopsAndSaysSoWhereMemoryEnds) {
   scene.cameras[0] = analytic::camera({2.6, 1.6, 2.6}, {1.2, 0, 1.2});
   RenderSettings little = settings(true, 240, 180);
   little.memory = 4 * 1024 * 1024;
-  const Sampled result = sample("area_adaptive_rb", scene, little, {{"shadow_map", int64_t{256}}, {"soft_discontinuity", int64_t{4}}});
+  const Sampled result = sample("area_adaptive_rb", scene, little,
+                                {{"shadow_map", int64_t{256}}, {"soft_discontinuity", int64_t{4}}});
   EXPECT_EQ(result.facts.at("refine.lights_cut_by_memory"), 1);
   EXPECT_GT(result.facts.at("refine.light_samples"), 9);
 }
@@ -233,6 +239,16 @@ TEST(AreaLights, UnchangedLightsAndCastersKeepTheirMaps) {
   EXPECT_EQ(cannot.second_facts.at("light.maps_rendered"), 25);
   EXPECT_EQ(cannot.first, kept.first);
   EXPECT_FALSE(cannot.warnings.empty());
+}
+
+TEST(AreaLights, RefinementKeepsMapsToo) {
+  const Scene scene = overhead(square_light(2.5));
+  const Values plain = {{"shadow_map", int64_t{256}}}, set = {{"shadow_map", int64_t{256}}, {"cache", true}};
+  const Sampled kept = sample("area_adaptive_rb", scene, settings(true), set);
+  EXPECT_EQ(kept.facts.at("refine.maps_rendered"), kept.facts.at("refine.light_samples"));
+  EXPECT_EQ(kept.second_facts.at("refine.maps_rendered"), 0);
+  EXPECT_EQ(kept.first, kept.second);
+  EXPECT_EQ(kept.first, sample("area_adaptive_rb", scene, settings(true), plain).first);
 }
 
 // Error of a graph against the ray tracer, over counted pixels of all lights.
@@ -261,8 +277,10 @@ TEST(AreaLights, ShapesFollowTheRayTracer) {
   const AreaLight polygon = polygon_light({{-0.9, -0.5}, {0.9, -0.5}, {0.0, 0.8}});
   for (const AreaLight& area : {disc, sphere, polygon}) {
     const Scene scene = overhead(area);
-    EXPECT_LT(error_to_rays("area_uniform", scene, {{"samples", int64_t{256}}, {"pattern", "sobol"}}), 0.02) << int(area.shape);
-    EXPECT_LT(error_to_rays("area_adaptive_rb", scene, {{"soft_discontinuity", int64_t{4}}}), 0.03) << int(area.shape);
+    EXPECT_LT(error_to_rays("area_uniform", scene, {{"samples", int64_t{256}}, {"pattern", "sobol"}}), 0.02)
+        << int(area.shape);
+    EXPECT_LT(error_to_rays("area_adaptive_rb", scene, {{"soft_discontinuity", int64_t{4}}}), 0.03)
+        << int(area.shape);
   }
 }
 
@@ -274,7 +292,8 @@ TEST(AreaLights, ATexturedLightIsWeighedByItsEmission) {
   half.width = 2, half.height = 1, half.nearest = true;
   half.rgba = {0, 0, 0, 255, 255, 255, 255, 255};
   scene.textures.push_back(half);
-  EXPECT_LT(error_to_rays("area_uniform", scene, {{"samples", int64_t{256}}, {"pattern", "grid_centres"}}), 0.02);
+  EXPECT_LT(error_to_rays("area_uniform", scene, {{"samples", int64_t{256}}, {"pattern", "grid_centres"}}),
+            0.02);
   EXPECT_LT(error_to_rays("area_adaptive_rb", scene, {{"soft_discontinuity", int64_t{4}}}), 0.04);
 }
 

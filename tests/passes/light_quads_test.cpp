@@ -98,7 +98,8 @@ TEST(LightQuads, DepthFirstAsksOneQuadATime) {
   EXPECT_EQ(quads.samples().size(), 81u);
 }
 
-// The weights' sums are 1, and over linear functions of the light the area weights are exact: the trapezoid rule.
+// The weights' sums are 1, and over linear functions of the light the area weights are exact: the trapezoid
+// rule.
 TEST(LightQuads, AreaWeightsIntegrateLinearFunctionsExactly) {
   for (uint32_t seed = 0; seed < 20; ++seed) {
     LightQuads quads(4, QuadOrder::breadth_first);
@@ -122,9 +123,12 @@ TEST(LightQuads, WeightsByLevelAreThePapers) {
   LightQuads quads(2, QuadOrder::breadth_first);
   quads.answer({true});
   quads.answer({true, false, false, false});
-  const std::vector<double> made = quads.weights(SampleWeights::creation), leaf = quads.weights(SampleWeights::leaf);
-  EXPECT_NEAR(made[0] / made[4], (1.0 / 4) / (1.0 / 9), 1e-12);  // a corner of the light, and a sample of level 1
-  EXPECT_NEAR(leaf[0] / leaf[3], (1.0 / 25) / (1.0 / 9), 1e-12);  // the corner that was divided, and the one across
+  const std::vector<double> made = quads.weights(SampleWeights::creation),
+                            leaf = quads.weights(SampleWeights::leaf);
+  EXPECT_NEAR(made[0] / made[4], (1.0 / 4) / (1.0 / 9),
+              1e-12);  // a corner of the light, and a sample of level 1
+  EXPECT_NEAR(leaf[0] / leaf[3], (1.0 / 25) / (1.0 / 9),
+              1e-12);  // the corner that was divided, and the one across
 }
 
 LightSurface disc() {
@@ -139,7 +143,8 @@ LightSurface disc() {
 
 TEST(LightQuads, OnADiscOnlyPlacesOnItAreSampled) {
   LightQuads quads(4, QuadOrder::breadth_first, disc());
-  EXPECT_EQ(quads.samples().size(), 5u) << "the square's corners are off the disc: it is divided without a question";
+  EXPECT_EQ(quads.samples().size(), 5u)
+      << "the square's corners are off the disc: it is divided without a question";
   EXPECT_EQ(quads.questions().size(), 4u);
   run(quads, always);
   for (const glm::dvec2& p : quads.samples()) EXPECT_LE(glm::length(p - 0.5), 0.5 + 1e-9);

@@ -11,6 +11,7 @@ struct LightSample {
   vec3 offset;   // in the face's frame, world units
   vec2 window;   // tangents; 0 for orthographic faces
   float weight;  // of its visibility
+  int layer;     // of its map
 };
 
 // Clip space of a point `q` of the sample's frame: Vulkan's, perspective depth (3.6) or, for orthographic faces, (3.8).

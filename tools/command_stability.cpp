@@ -1,0 +1,239 @@
+// gnomon stability: every technique along the axes from an ordinary scene to extreme ones.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "bench/progress.h"
+#include "bench/stability.h"
+#include "bench/stability_process.h"
+#include "engine/error.h"
+#include "engine/image.h"
+#include "tools/cli.h"
+#include "tools/output_folder.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+using Ran = StabilityMeasurement::Ran;
+
+struct Options {
+  std::vector<std::string> graphs, axes;
+  std::optional<std::string> test;
+  fs::path out, json_file;
+  double timeout = 120;  // seconds a case
+  bool quick = false;
+  DeviceFlags device;
+};
+
+StabilityOptions stability_options(const Options& options) {
+  StabilityOptions result;
+  result.quick = options.quick;
+  result.memory = options.device.memory;
+  return result;
+}
+
+std::vector<fs::path> graphs_of(const Options& options) {
+  std::vector<fs::path> files;
+  for (const std::string& name : options.graphs) files.push_back(find_graph(name));
+  if (options.graphs.empty()) files = all_graphs();
+  for (const fs::path& file : files) load_graph(file);
+  return files;
+}
+
+// How cases are run: here, one after the other, or each in a process of its own.
+class Cases {
+ public:
+  virtual ~Cases() = default;
+  virtual bool follows_light(const fs::path& graph) = 0;
+  virtual StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool area) = 0;
+};
+
+class CasesHere : public Cases {
+ public:
+  explicit CasesHere(const Options& options)
+      : options_(stability_options(options)),
+        device_(open_device(options.device)),
+        references_(make_stability_references()) {}
+  bool follows_light(const fs::path& graph) override { return follows_light_size(device_, graph, options_); }
+  StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool area) override {
+    return measure_stability(device_, graph, test, area, options_, *references_);
+  }
+
+ private:
+  StabilityOptions options_;
+  std::shared_ptr<Device> device_;
+  std::shared_ptr<StabilityReferences> references_;
+};
+
+class CasesApart : public Cases {
+ public:
+  explicit CasesApart(const Options& options) : options_(options) {}
+  bool follows_light(const fs::path& graph) override {
+    const auto outcome =
+        apart([&] { return std::string(CasesHere(options_).follows_light(graph) ? "yes" : "no"); });
+    return outcome.ended == ChildOutcome::Ended::done && outcome.text == "yes";
+  }
+  StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool area) override {
+    const auto outcome = apart([&] {
+      return to_json(CasesHere(options_).run(graph, test, area))
+          .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    });
+    StabilityMeasurement m;
+    if (outcome.ended == ChildOutcome::Ended::done)
+      return measurement_from(nlohmann::json::parse(outcome.text));
+    m.ran = outcome.ended == ChildOutcome::Ended::crashed ? Ran::crashed : Ran::timed_out;
+    m.message = outcome.text;
+    return m;
+  }
+
+ private:
+  ChildOutcome apart(const std::function<std::string()>& work) const {
+    return run_in_child(work, options_.timeout, child_memory());
+  }
+  const Options& options_;
+};
+
+void print_row(const StabilityRow& row, const StabilityOptions& options) {
+  size_t count[4] = {};
+  for (const StabilityFinding& f : row.findings) ++count[static_cast<size_t>(f.verdict)];
+  fmt::print("{:<24}{} cases: {} hold, {} degrade, {} refused, {} fail\n", row.name, row.findings.size(),
+             count[0], count[1], count[2], count[3]);
+  for (const auto& [axis, sentence] : stated_domain(row)) fmt::print("  {:<18}{}\n", axis, sentence);
+  for (const StabilityFinding& f : row.findings)
+    if (f.verdict == StabilityVerdict::fails) {
+      fmt::print("  first failure: {}\n    {}\n", f.reason, reproduce(row, f.test, options));
+      break;
+    }
+  std::fflush(stdout);
+}
+
+bool any_broken(const StabilityRow& row) {
+  return std::any_of(row.findings.begin(), row.findings.end(), [](const auto& f) { return f.broken; });
+}
+
+int report(const std::vector<StabilityRow>& rows, const Options& options) {
+  const StabilityOptions walk = stability_options(options);
+  const std::string json =
+      to_json(rows, walk).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (!options.out.empty()) {
+    OutputFolder folder(options.out);
+    write_text(folder.file("stability.json"), json);
+    write_text(folder.file("stability.md"), stability_report(rows, walk));
+    folder.keep();
+  }
+  if (!options.json_file.empty()) write_text(options.json_file, json);
+  return std::any_of(rows.begin(), rows.end(), any_broken) ? exit_failed : exit_done;
+}
+
+int walk(const Options& options, Cases& cases) {
+  const std::vector<fs::path> graphs = graphs_of(options);
+  const auto run = [&](const fs::path& graph, const StabilityCase& test, bool area) {
+    return cases.run(graph, test, area);
+  };
+  std::vector<StabilityRow> rows;
+  Progress progress("stability");
+  for (size_t i = 0; i < graphs.size(); ++i) {
+    const auto tell = [&](double share, const std::string& test) {
+      progress.update((double(i) + share) / double(graphs.size()), graphs[i].stem().string() + " " + test);
+    };
+    rows.push_back(walk_stability(graphs[i], cases.follows_light(graphs[i]), stability_options(options),
+                                  options.axes, run, tell));
+    print_row(rows.back(), stability_options(options));
+  }
+  progress.done();
+  return report(rows, options);
+}
+
+void print_case(const StabilityFinding& finding, const StabilityRow& row) {
+  fmt::print("{}, {}: {}{}{}\n", row.name, to_string(finding.test), to_string(finding.verdict),
+             finding.reason.empty() ? "" : ": ", finding.reason);
+  fmt::print("{}\n", to_json(finding.measured).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+int one_case(const Options& options, Cases& cases) {
+  const StabilityCase test = parse_stability_case(*options.test);
+  std::vector<StabilityRow> rows;
+  for (const fs::path& graph : graphs_of(options)) {
+    StabilityRow row;
+    row.graph = graph, row.name = graph.stem().string();
+    row.area = cases.follows_light(graph);
+    row.base = cases.run(graph, {}, row.area);
+    const StabilityMeasurement measured = cases.run(graph, test, row.area);
+    row.findings.push_back(judge_stability(test, measured, row.base));
+    print_case(row.findings.back(), row);
+    rows.push_back(std::move(row));
+  }
+  const int status = report(rows, options);
+  const auto fails = [](const StabilityRow& row) {
+    return row.findings.front().verdict == StabilityVerdict::fails;
+  };
+  return std::any_of(rows.begin(), rows.end(), fails) ? exit_failed : status;
+}
+
+void check_axes(const std::vector<std::string>& wanted) {
+  std::vector<std::string> names;
+  for (const StabilityAxis& axis : stability_axes()) names.push_back(axis.name);
+  Problems problems;
+  for (const std::string& name : wanted)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      problems.add(fmt::format("no axis '{}'", name), {}, "--axis", did_you_mean(name, names));
+  problems.raise();
+}
+
+int stability_command(const Options& options) {
+  check_axes(options.axes);
+  std::unique_ptr<Cases> cases;
+  if (options.quick)
+    cases = std::make_unique<CasesHere>(options);
+  else
+    cases = std::make_unique<CasesApart>(options);
+  return options.test ? one_case(options, *cases) : walk(options, *cases);
+}
+
+std::string footer() {
+  std::string text = "Axes:\n";
+  for (const StabilityAxis& axis : stability_axes())
+    text += fmt::format("  {:<18}{} ({})\n", axis.name, axis.help, axis.unit);
+  return text +
+         "\nExamples:\n  gnomon stability --quick\n  gnomon stability --graph evsm --axis exponent --axis "
+         "offset\n"
+         "  gnomon stability --graph evsm --case exponent=200,scale=1e-6";
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("stability", "where techniques hold, degrade and fail on the way to extreme scenes");
+  command
+      ->add_option("--graph,-g", options->graphs,
+                   "a technique, may be repeated (default: all of 'gnomon list graphs')")
+      ->type_name("NAME|FILE")
+      ->take_all();
+  command->add_option("--axis", options->axes, "an axis, may be repeated (default: all)")
+      ->type_name("NAME")
+      ->take_all();
+  command
+      ->add_option("--case", options->test,
+                   "this case alone, with its measurements; base for the ordinary scene")
+      ->type_name("AXIS=VALUE,...");
+  command->add_flag("--quick", options->quick,
+                    "small images, one or two points on each axis, no pairs, all in this process");
+  command->add_option("--timeout", options->timeout, "seconds for a case")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--out,-o", options->out, "folder for stability.json and stability.md")
+      ->type_name("DIR");
+  command->add_option("--json", options->json_file, "write stability.json here as well")->type_name("FILE");
+  add_device_options(*command, options->device);
+  command->footer(footer());
+  command->callback([options, &status] { status = stability_command(*options); });
+}
+
+}  // namespace gnomon
