@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float floor_half = 6, blocker_half = 1, blocker_height = 2;  // scene units
-constexpr double light_distance = 7;                                    // scene units, from the origin
+constexpr double light_distance = 7;                                   // scene units, from the origin
 constexpr double far_depth = 12;  // scene units: about the light's farthest receiver
 constexpr glm::dvec3 offset_direction(1.0, 0.5, -0.75);
 constexpr glm::dvec3 sphere_centre(-0.9, 0.5, 0.7);

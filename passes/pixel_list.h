@@ -9,8 +9,8 @@ namespace gnomon {
 
 // `what`: which of one light's pixels, for the listing.
 // `listed`, `arguments`: the buffers' names.
-void declare_pixel_list(Declaration& d, Extent pixels, const std::string& what, const std::string& listed = "listed",
-                        const std::string& arguments = "arguments");
+void declare_pixel_list(Declaration& d, Extent pixels, const std::string& what,
+                        const std::string& listed = "listed", const std::string& arguments = "arguments");
 
 // No workgroups in x, one in y and z; no pixels. A barrier is the caller's.
 void clear_pixel_list(Context& c, const std::string& arguments = "arguments");

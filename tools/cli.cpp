@@ -82,6 +82,7 @@ int run(int argc, const char* const* argv) {
   add_compare(app, status);
   add_bench(app, status);
   add_report(app, status);
+  add_pick(app, status);
   add_explain(app, status);
   add_check(app, status);
   add_list(app, status);

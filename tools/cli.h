@@ -42,6 +42,7 @@ void add_scene(CLI::App& app, int& status);
 void add_edt(CLI::App& app, int& status);
 void add_stability(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
+void add_pick(CLI::App& app, int& status);
 
 // ---- what several commands share ----
 

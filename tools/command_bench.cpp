@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bench/compare.h"
 #include "bench/harness.h"
 #include "bench/progress.h"
 #include "bench/results.h"
@@ -26,7 +27,8 @@ using nlohmann::json;
 
 struct Options {
   std::string suite, shard = "1/1";
-  fs::path out, json_file;
+  fs::path out, json_file, compare;
+  double tolerance = 0.05;
   DeviceFlags device;
   bool resume = false, overwrite = false, images = false;
   uint32_t repeat = 0;
@@ -60,8 +62,18 @@ void write_rows(const fs::path& file, const std::vector<json>& rows) {
   write_text(file, json(rows).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
+// Whether something became worse.
+bool print_comparison(const Options& options, const std::vector<json>& before, const std::vector<json>& now) {
+  const Comparison comparison = compare_results(before, now, options.tolerance);
+  fmt::print("\nAgainst {}:\n{}", options.compare.string(), to_table(comparison));
+  if (comparison.compared == 0) warn("no row of " + options.compare.string() + " is one of these");
+  return comparison.regressed();
+}
+
 int bench_command(const Options& options) {
   const auto [shard, shards] = parse_shard(options.shard);
+  std::vector<json> old_rows;
+  if (!options.compare.empty()) old_rows = read_results(options.compare);
   Suite suite = load_suite(find_suite(options.suite));
   if (options.repeat > 0) suite.repeat = options.repeat;
   suite.memory = options.device.memory;
@@ -94,7 +106,8 @@ int bench_command(const Options& options) {
     fmt::print(stderr, "gnomon: {} of {} rows failed; their status says why\n", result.failed,
                result.measured);
   const int validation = report_validation(*device);
-  return result.failed > 0 ? exit_failed : validation;
+  const bool regressed = !options.compare.empty() && print_comparison(options, old_rows, rows);
+  return result.failed > 0 || regressed ? exit_failed : validation;
 }
 
 }  // namespace
@@ -122,6 +135,16 @@ void add_bench(CLI::App& app, int& status) {
   command->add_option("--repeat", options->repeat, "timed rounds, instead of the suite's")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
+  command
+      ->add_option("--compare", options->compare,
+                   "rows of an earlier run: what changed, and exit status 1 when time or error became worse")
+      ->type_name("OLD.jsonl");
+  command
+      ->add_option("--compare-tolerance", options->tolerance,
+                   "share by which a ratio must differ, besides its interval, to count as a change")
+      ->type_name("X")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
   command->add_flag("--images", options->images,
                     "write each row's images into DIR/images, for 'gnomon report' to compare");
   add_device_options(*command, options->device);
@@ -134,7 +157,8 @@ Examples:
   gnomon bench demo
   gnomon bench hard --out out/hard
   gnomon bench hard --out out/hard --resume        after an interruption
-  gnomon bench hard --out out/hard-2 --shard 2/4)");
+  gnomon bench hard --out out/hard-2 --shard 2/4
+  gnomon bench hard --compare out/hard/results.jsonl)");
   command->callback([options, &status] { status = bench_command(*options); });
 }
 

@@ -1,0 +1,35 @@
+// What changed between two runs of a suite.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace gnomon {
+
+struct Change {
+  enum class Kind { time, error, failure, missing } kind = Kind::time;
+  std::string where;             // scene, size and technique
+  std::string what;              // "ratio", a metric, or a sentence
+  double before = 0, after = 0;  // of time: median ratios to the baseline; of error: the metric
+  bool worse = false;            // a regression
+};
+
+struct Comparison {
+  size_t compared = 0;          // rows that both runs have with status ok
+  std::vector<Change> changes;  // in the order of the new rows; what is missing last
+  bool regressed() const;
+};
+
+// Rows are the same when scene, size, camera, device, reference, sequence length and the graph with all its
+// variables are. Time is the ratio to the baseline, which a slow machine does not change: it differs when the
+// 95 % intervals do not overlap and the medians differ by more than the share `tolerance`. Errors are the
+// same bits on the same device: any difference counts. A row that no longer runs is a regression; one that is
+// not in `after` is not.
+Comparison compare_results(const std::vector<nlohmann::json>& before,
+                           const std::vector<nlohmann::json>& after, double tolerance);
+
+// A table of the changes and a line that counts them.
+std::string to_table(const Comparison& comparison);
+
+}  // namespace gnomon
