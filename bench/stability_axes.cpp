@@ -94,7 +94,7 @@ std::vector<StabilityAxis> make_axes() {
   axes.push_back(variable_axis("penumbra", "1", "penumbra's width / scene size",
                                {"0", "1e-4", "0.1", "1", "10"}, {"1"}, {"penumbra_relative"}));
   axes.push_back(
-      scene_axis("layers", "1", "floors in one plane", {"2", "100", "5000"}, {"500"}, &S::layers, 1, 1e6));
+      scene_axis("layers", "1", "floors in one plane", {"2", "100", "2000"}, {"500"}, &S::layers, 1, 1e6));
   axes.push_back(scene_axis("slivers", "1", "length / width of thin triangles in the blocker",
                             {"1e2", "1e4", "1e5", "1e6"}, {"1e6"}, &S::sliver_aspect, 1, 1e12));
   axes.push_back(scene_axis("depth_complexity", "1", "casters over one another",

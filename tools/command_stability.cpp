@@ -25,7 +25,7 @@ struct Options {
   std::vector<std::string> graphs, axes;
   std::optional<std::string> test;
   fs::path out, json_file;
-  double timeout = 120;  // seconds a case
+  double timeout = 600;  // seconds a case
   bool quick = false;
   DeviceFlags device;
 };

@@ -41,7 +41,7 @@ float sample_visibility() {
 
 void main() {
   ivec2 at;
-  if (!listed_pixel(gl_GlobalInvocationID.x, int(frame.viewport.x), at)) return;
+  if (!listed_pixel(list_slot(), int(frame.viewport.x), at)) return;
   make_area_receiver(at, receiver);
   uint all_new = push.count < 32u ? (1u << push.count) - 1u : 0xFFFFFFFFu;
   uint left = edge_words[word_place(push.part.x, at)] >> push.bit & all_new;

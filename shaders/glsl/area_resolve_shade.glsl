@@ -8,7 +8,7 @@ layout(push_constant) uniform Push { uint light; } push;
 
 void main() {
   ivec2 at;
-  if (!listed_pixel(gl_GlobalInvocationID.x, int(frame.viewport.x), at)) return;
+  if (!listed_pixel(list_slot(), int(frame.viewport.x), at)) return;
   uint first = sample_ranges[2u * push.light], count = sample_ranges[2u * push.light + 1u];
   float sum = 0.0;
   for (uint i = 0u; i < count; i += 32u) {

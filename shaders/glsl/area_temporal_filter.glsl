@@ -57,7 +57,7 @@ float filtered_share(ivec2 at, ShadowHistory h, int count) {
 
 void main() {
   ivec2 at;
-  bool listed = listed_pixel(gl_GlobalInvocationID.x, imageSize(visibility).x, at);
+  bool listed = listed_pixel(list_slot(), imageSize(visibility).x, at);
   ivec3 place = ivec3(at, push.light);
   ShadowHistory h = unpack_history(imageLoad(shadow_buffer, place));
   float filtered = filtered_share(at, h, listed && h.blocker > BLOCKER_NONE ? params.neighbours : 0);

@@ -44,7 +44,10 @@ bool meets_moving(AreaReceiver receiver, Receiver plane, ivec2 texel) {
 // A second list as pixel_list.glsl has it: of new pixels, in `fresh` and `fresh_arguments`.
 void list_fresh_pixel(ivec2 pixel, int width) {
   uint slot = atomicAdd(fresh_arguments[3], 1u);
-  if (slot % LIST_GROUP == 0u) atomicMax(fresh_arguments[0], slot / LIST_GROUP + 1u);
+  if (slot % LIST_GROUP == 0u) {
+    atomicMax(fresh_arguments[0], list_groups(slot).x);
+    if (list_groups(slot).y > 1u) atomicMax(fresh_arguments[1], list_groups(slot).y);
+  }
   fresh[slot] = pixel.y * width + pixel.x;
 }
 

@@ -20,7 +20,7 @@ float mean_blocker(ivec2 at, AreaReceiver receiver, Receiver plane) {
 
 void main() {
   ivec2 at;
-  bool listed = fresh_pixel(gl_GlobalInvocationID.x, imageSize(visibility).x, at);
+  bool listed = fresh_pixel(list_slot(), imageSize(visibility).x, at);
   AreaReceiver receiver;
   make_area_receiver(at, receiver);
   float blocker = mean_blocker(at, receiver, plane_in(receiver, light_sample(push.first)));

@@ -26,7 +26,7 @@ bool rbsm_lit(ivec2 texel, inout float lowering) {
 
 void main() {
   ivec2 at;
-  if (!listed_pixel(gl_GlobalInvocationID.x, imageSize(visibility).x, at)) return;
+  if (!listed_pixel(list_slot(), imageSize(visibility).x, at)) return;
   make_query(at, query);
   ivec2 texel = ivec2(floor(query.position));
   vec2 c = fract(query.position);  // (3.1)

@@ -118,7 +118,7 @@ float add_part(float sum, ivec2 first, ivec2 inside, vec2 c) {
 
 void main() {
   ivec2 at;
-  if (!listed_pixel(gl_GlobalInvocationID.x, imageSize(visibility).x, at)) return;
+  if (!listed_pixel(list_slot(), imageSize(visibility).x, at)) return;
   make_query(at, query);
   ivec2 part = ivec2(push.part & 0xFFu) * block_size(), inside = min(ivec2(params.kernel) - part, ivec2(block_size()));
   ivec2 first = ivec2(floor(query.position)) - params.kernel / 2 + part;
