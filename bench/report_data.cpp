@@ -308,7 +308,7 @@ std::string report_csv(const json& report) {
     const json& place = report["places"][row["place"].get<size_t>()];
     const auto at = [&](const json& from, const char* pointer) {
       const auto value = figure_at(from, pointer);
-      return value ? json(*value).dump() : std::string();
+      return value ? fmt::format("{}", *value) : std::string();
     };
     std::vector<std::string> cells = {
         csv_text(place["scene"]),  at(place, "/size/0"),       at(place, "/size/1"),

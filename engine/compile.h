@@ -36,10 +36,10 @@ struct Resource {
   BufferShape buffer;
   VkImageUsageFlags image_usage = 0;
   VkBufferUsageFlags buffer_usage = 0;
-  bool host_visible = false;                     // read by the host
-  bool history = false;                          // two copies, swapped every frame; never aliased
-  bool kept = false;                             // one copy, with what the frame before left in it; never aliased
-  bool exported = false;                         // graph output or capture: never aliased
+  bool host_visible = false;  // read by the host
+  bool history = false;       // two copies, swapped every frame; never aliased
+  bool kept = false;          // one copy, with what the frame before left in it; never aliased
+  bool exported = false;      // graph output or capture: never aliased
   std::optional<std::array<float, 4>> constant;  // folded: 1x1 (layers kept), filled once
   // of constants and of both copies of history: to be in before frame 0
   VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;

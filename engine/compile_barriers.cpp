@@ -106,7 +106,8 @@ class Barriers {
   // The frame before left its content in the layout of its last use.
   Barrier first_use_of_kept(uint32_t i) const {
     const std::vector<Epoch>& epochs = uses_[i].current;
-    return {i, scope_after(epochs.back()), epochs.front().use, false, loop_at(epochs.front().first) != nullptr};
+    return {i, scope_after(epochs.back()), epochs.front().use, false,
+            loop_at(epochs.front().first) != nullptr};
   }
 
   // The contents stay from frame to frame; only a second layout needs barriers.

@@ -65,7 +65,8 @@ std::vector<Wait> find_waits(std::vector<HostRead> reads) {
   return waits;
 }
 
-// Why the host waits at the end of a loop's turn: its controller reads what it wrote itself. Empty: it does not.
+// Why the host waits at the end of a loop's turn: its controller reads what it wrote itself. Empty: it does
+// not.
 std::string controller_reads(const Plan& plan, const LoopRange& loop) {
   const PlanNode& controller = plan.nodes[loop.controller];
   for (const Port& port : controller.declaration.ports())

@@ -206,8 +206,8 @@ void DevicePlan::write_set(const PlanNode& node, NodeState& state) {
   vkUpdateDescriptorSets(device_->handle(), 1, &w, 0, nullptr);
 }
 
-// Folded constants have their value and both copies of a history image are zero before the first frame; kept images
-// have their layout.
+// Folded constants have their value and both copies of a history image are zero before the first frame; kept
+// images have their layout.
 void DevicePlan::fill_initial() {
   OneShot once(device_);
   for (size_t i = 0; i < resources_.size(); ++i) {

@@ -318,21 +318,22 @@ std::vector<LightFace> LightFit::faces(const Scene& scene) const {
   return faces;
 }
 
-// Between light and receivers lies the hull of the light's rectangle and the frustum. The frustum from an apex behind
-// the light, which the rectangle just fits, holds it.
+// Between light and receivers lies the hull of the light's rectangle and the frustum. The frustum from an
+// apex behind the light, which the rectangle just fits, holds it.
 AreaFace area_face(const Scene& scene, const LightFace& centre) {
   const Light& light = scene.lights[centre.light];
   if (!shines_as_area(light)) return {centre, 0};
   const double x = 0.5 * light.area->width, y = 0.5 * light.area->height;
   const double back = std::max(x / centre.half_width, y / centre.half_height);
   LightFace behind = centre;
-  behind.light_from_world = glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -back)) * centre.light_from_world;
+  behind.light_from_world =
+      glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -back)) * centre.light_from_world;
   Range depths = depths_inside(scene, behind, Which::all, back);
   depths.lo -= back, depths.hi -= back;
   AreaFace result{centre, 0};
   set_perspective_range(result.face, depths, scene_size(scene));
-  // Receivers at depth z lie within +-t z of the axis, seen from a sample at x within (+-t z - x) / z. Nearer than the
-  // light's own size the window would only widen.
+  // Receivers at depth z lie within +-t z of the axis, seen from a sample at x within (+-t z - x) / z. Nearer
+  // than the light's own size the window would only widen.
   const double nearest = std::min(std::max(result.face.near, std::max(x, y)), result.face.far);
   const double spread = 0.5 * (1.0 / nearest - 1.0 / result.face.far);
   result.converge = 0.5 * (1.0 / nearest + 1.0 / result.face.far);

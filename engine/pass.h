@@ -69,8 +69,8 @@ struct Port {
   bool is_buffer = false;
   bool array = false;     // GLSL sees a 2D array (layers); otherwise a plain 2D image
   bool optional = false;  // an input that may be left unconnected
-  bool kept = false;      // an output or transient that keeps its content from turn to turn and frame to frame
-  ImageShape image;       // of an input: that of the connected output
+  bool kept = false;  // an output or transient that keeps its content from turn to turn and frame to frame
+  ImageShape image;   // of an input: that of the connected output
   BufferShape buffer;
   std::string help;
 };
@@ -149,8 +149,8 @@ class Declaration {
   // An image of this pass alone, aliased with others' like every intermediate.
   void transient(std::string name, Access access, bool array, ImageShape shape, std::string help);
 
-  // Of an image of its own: what one turn of a loop or one frame wrote, the next one finds. Undefined before the first
-  // write.
+  // Of an image of its own: what one turn of a loop or one frame wrote, the next one finds. Undefined before
+  // the first write.
   void keep(std::string_view name);
 
   // Buffer ports.
@@ -196,9 +196,9 @@ struct Pass {
   virtual ~Pass() = default;
   virtual void declare(Declaration&) const = 0;  // ports, parameters; no device
   virtual Need need(const SceneFacts&, const Params&) const { return Need::run(); }
-  virtual void prepare(Environment&) {}                        // pipelines, once
-  virtual void record(Context&) = 0;                           // once per execution
-  virtual Step decide(const HostView&) { return Step::done; }  // only for a loop's controller
+  virtual void prepare(Environment&) {}                                 // pipelines, once
+  virtual void record(Context&) = 0;                                    // once per execution
+  virtual Step decide(const HostView&) { return Step::done; }           // only for a loop's controller
   virtual std::map<std::string, double> figures() const { return {}; }  // of the last frame, for run.json
 };
 

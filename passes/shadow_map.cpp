@@ -1,8 +1,12 @@
+#include <string>
+
 #include "engine/context.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {
 namespace {
+
+constexpr uint32_t least_useful_side = 16;  // texels: below, shadows of the ordinary stability scene are lost
 
 class ShadowMap : public Pass {
  public:
@@ -30,6 +34,9 @@ class ShadowMap : public Pass {
   void prepare(Environment& e) override {
     const bool linear = e.params().choice("encoding") == "linear";
     const std::string& bias = e.params().choice("bias");
+    if (const uint32_t side = e.shape("depth").extent.width; side < least_useful_side)
+      e.warn("a map of " + std::to_string(side) + " texels a side tells little: use at least " +
+             std::to_string(least_useful_side));
     midpoint_ = bias == "midpoint";
     cull_ = bias == "back_face" ? Cull::front : Cull::none;
     pipelines_ = make(e, linear, false);

@@ -94,7 +94,8 @@ int bench_command(const Options& options) {
   double share = 0;
   bench.progress = [&](double now, const std::string& note) { progress.update(share = now, note); };
   const auto tracing = [&](double, const std::string& note) { progress.update(share, note); };
-  const BenchResult result = run_suite(suite, bench, device_stages(device, cache_folder(), tracing, bench.out));
+  const BenchResult result =
+      run_suite(suite, bench, device_stages(device, cache_folder(), tracing, bench.out));
   progress.done();
 
   const std::vector<json> rows = read_results(result.results);

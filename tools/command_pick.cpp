@@ -154,7 +154,12 @@ int pick_command(const Options& options) {
          did_you_mean(options.metric, metrics));
   const Suite suite = suite_of(options);
   const RowFolder folder(options.results);
-  const std::vector<json> rows = measure(options, suite, folder.path());
+  std::vector<json> rows = measure(options, suite, folder.path());
+  if (!options.graphs.empty())  // the baseline was there for the ratios only
+    std::erase_if(rows, [&](const json& row) {
+      return std::find(options.graphs.begin(), options.graphs.end(), row.value("graph", "")) ==
+             options.graphs.end();
+    });
   if (!options.json_file.empty())
     write_text(options.json_file, json(rows).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   for (const json& row : rows)

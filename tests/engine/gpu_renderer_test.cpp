@@ -370,9 +370,9 @@ TEST_F(GpuRenderer, HistoryIsTheFrameBefore) {
 
 // After an even and an odd number of frames: the copies of history have changed places or not.
 TEST_F(GpuRenderer, PlayForgetsTheFramesBefore) {
-  Renderer r = renderer(
-      file_with(R"({"id": "acc", "type": "test_accumulate", "in": {"last": "acc.result@previous"}})",
-                R"({"visibility": "acc.result"})"));
+  Renderer r =
+      renderer(file_with(R"({"id": "acc", "type": "test_accumulate", "in": {"last": "acc.result@previous"}})",
+                         R"({"visibility": "acc.result"})"));
   for (const int frames : {2, 3, 1}) {
     r.play();
     for (int frame = 1; frame <= frames; ++frame) {

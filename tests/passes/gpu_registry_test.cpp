@@ -56,7 +56,8 @@ Outputs frame(Renderer& renderer, const Graph& graph) {
 
 bool has_history(const std::vector<GraphNode>& nodes) {
   return std::any_of(nodes.begin(), nodes.end(), [](const GraphNode& node) {
-    const bool reads = std::any_of(node.in.begin(), node.in.end(), [](const auto& in) { return in.second.previous; });
+    const bool reads =
+        std::any_of(node.in.begin(), node.in.end(), [](const auto& in) { return in.second.previous; });
     return reads || has_history(node.body);
   });
 }

@@ -78,7 +78,8 @@ function logAxis(title) {
       autoSkip: true,
       callback(value) {
         const digit = Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
-        return [1, 2, 5, 10].includes(digit) ? figure(value) : null;
+        const narrow = this.max < 10 * this.min;  // less than a decade: every digit
+        return narrow || [1, 2, 5, 10].includes(digit) ? figure(value) : null;
       },
     },
   };

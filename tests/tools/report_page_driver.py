@@ -1,0 +1,93 @@
+"""Opens a report in headless Chromium and uses it as a reader would. Exit status 1 with a message when it fails.
+
+usage: report_page_driver.py REPORT.html
+"""
+import pathlib
+import sys
+
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import Select, WebDriverWait
+
+SECONDS = 60  # for a page that a loaded machine draws slowly
+
+
+def expect(condition, message):
+    if not condition:
+        sys.exit(f"report page: {message}")
+
+
+def browser():
+    options = webdriver.ChromeOptions()
+    options.binary_location = "/usr/bin/chromium"
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                     "--window-size=1200,900"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+
+
+def technique_column(driver, column):
+    rows = driver.find_elements(By.CSS_SELECTOR, "#place-0 table.values tr")[1:]
+    return {row.find_elements(By.TAG_NAME, "td")[0].text: row.find_elements(By.TAG_NAME, "td")[column].text
+            for row in rows}
+
+
+def switch_metric(driver):
+    errors = technique_column(driver, 1)
+    expect(errors.get("exact") == "0.01" and errors.get("quick (baseline)") == "0.2", f"rmse column is {errors}")
+    expect(technique_column(driver, 6).get("bad") == "", "a dominated row is on the front")
+    Select(driver.find_element(By.ID, "metric")).select_by_value("misclassified")
+    errors = technique_column(driver, 1)
+    expect(errors.get("exact") == "0", f"misclassified column is {errors}")
+    title = driver.execute_script("return report.charts[0].scatter.options.scales.y.title.text")
+    expect(title == "misclassified", f"the chart's axis says {title}")
+
+
+def read_a_point(driver):
+    lines = driver.execute_script(
+        """const {scatter} = report.charts[0];
+           const i = scatter.data.datasets.findIndex((dataset) => dataset.label === 'quick');
+           scatter.tooltip.setActiveElements([{datasetIndex: i, index: 0}], {x: 0, y: 0});
+           scatter.update();
+           return scatter.tooltip.body[0].lines;""")
+    expect(any("10 ms" in line for line in lines), f"the tooltip says {lines}")
+
+
+def move_slider(driver):
+    WebDriverWait(driver, SECONDS).until(lambda d: d.find_element(By.ID, "image-caption").text != "")
+    slider = driver.find_element(By.ID, "slider")
+    before = driver.execute_script("return document.getElementById('image-b').style.clipPath")
+    slider.send_keys(Keys.HOME)
+    after = driver.execute_script("return document.getElementById('image-b').style.clipPath")
+    expect(before != after and "0%" in after, f"the slider moved the edge from {before} to {after}")
+    # Where quick is lit and the reference is not, false colour is red; elsewhere they are equal, white.
+    Select(driver.find_element(By.ID, "image-kind")).select_by_value("error")
+    pixel = "return [...document.getElementById('image-a').getContext('2d').getImageData(arguments[0], 0, 1, 1).data]"
+    WebDriverWait(driver, SECONDS).until(lambda d: d.execute_script(pixel, 0) == [255, 0, 0, 255])
+    expect(driver.execute_script(pixel, 7) == [255, 255, 255, 255], "an equal pixel is not white")
+
+
+def main():
+    driver = browser()
+    try:
+        driver.get(pathlib.Path(sys.argv[1]).absolute().as_uri())
+        expect(driver.find_element(By.ID, "summary").text.startswith("4 measurements"), "no summary")
+        switch_metric(driver)
+        read_a_point(driver)
+        move_slider(driver)
+        driver.set_window_size(400, 800)  # a phone
+        wide = driver.execute_script("return document.documentElement.scrollWidth - window.innerWidth")
+        expect(wide <= 0, f"the page is {wide} pixels wider than a phone")
+        # Reading canvases back, as this script does, gives a warning of its own.
+        log = [entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
+        expect(not log, f"the console says {log}")
+        loaded = driver.execute_script("return performance.getEntriesByType('resource').map((e) => e.name)")
+        expect(not [name for name in loaded if not name.startswith("data:")], f"the page loads {loaded}")
+    finally:
+        driver.quit()
+
+
+main()
