@@ -76,7 +76,7 @@ Stage stage_of(const StabilityCase& test, const Values& known, const StabilityOp
     apply_variables(axis, value, known, stage);
     if (!axis.apply) continue;
     axis.apply(stage.setup, stage.size, value);
-    stage.scene_key += name + "=" + value + ",";
+    stage.scene_key.append(name).append("=").append(value).append(",");
   }
   return stage;
 }

@@ -15,10 +15,10 @@ namespace {
 using nlohmann::json;
 
 struct Column {
-  const char* title;
-  const char* pointer;  // into a row
-  double scale;
-  int digits;
+  const char* title = "";
+  const char* pointer = "";  // into a row
+  double scale = 1;
+  int digits = 0;
   bool where_any = false;  // only in tables where some row has a figure
 };
 constexpr Column columns[] = {

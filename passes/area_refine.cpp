@@ -113,11 +113,12 @@ class AreaRefine : public Pass {
   Step decide(const HostView& host) override {
     std::vector<uint32_t> answers(2 * asked_);
     std::memcpy(answers.data(), host.buffer("answers").data(), answers.size() * sizeof(uint32_t));
+    const std::vector<bool> banding = any_passed(answers);
     size_t next = 0;
     bool more = false;
     for (LightState& light : lights_) {
       if (!light.tree) continue;
-      light.tree->answer(divided(light, answers, next));
+      light.tree->answer(divided(light, banding, next));
       more = more || !light.tree->questions().empty() || light.tree->samples().size() > light.rendered;
     }
     if (more) return Step::again;
@@ -288,15 +289,14 @@ class AreaRefine : public Pass {
   }
 
   // One light's answers, from `next` on.
-  std::vector<bool> divided(LightState& light, const std::vector<uint32_t>& answers, size_t& next) const {
+  std::vector<bool> divided(LightState& light, const std::vector<bool>& banding, size_t& next) const {
     std::vector<bool> divide;
     uint32_t room = light.capacity - uint32_t(light.tree->samples().size());
     constexpr uint32_t kMostNew = 5;  // samples that dividing a quad makes
-    for (size_t i = 0; i < light.tree->questions().size(); ++i, next += 2) {
-      if (answers[next + 1] == 0) fail("the device did not answer an occlusion query", {}, "area_refine");
-      const bool banding = answers[next] != 0, fits = room >= kMostNew;
-      light.full = light.full || (banding && !fits);
-      divide.push_back(banding && fits);
+    for (size_t i = 0; i < light.tree->questions().size(); ++i, ++next) {
+      const bool fits = room >= kMostNew;
+      light.full = light.full || (banding[next] && !fits);
+      divide.push_back(banding[next] && fits);
       if (divide.back()) room -= kMostNew;
     }
     return divide;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/error.h"
+
 namespace gnomon {
 namespace {
 
@@ -142,6 +144,15 @@ uint32_t LightQuads::deepest_level() const {
   uint32_t deepest = 0;
   for (const Quad& leaf : leaves_) deepest = std::max(deepest, leaf.level);
   return deepest;
+}
+
+std::vector<bool> any_passed(std::span<const uint32_t> results) {
+  std::vector<bool> passed;
+  for (size_t i = 0; i + 1 < results.size(); i += 2) {
+    if (results[i + 1] == 0) fail("the device did not answer an occlusion query");
+    passed.push_back(results[i] != 0);
+  }
+  return passed;
 }
 
 }  // namespace gnomon

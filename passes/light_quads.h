@@ -74,4 +74,8 @@ class LightQuads {
   uint32_t first_new_ = 0;
 };
 
+// What occlusion queries say, two words each: samples that passed, and whether there is an answer. Error when
+// there is none: refining on would be guessing.
+std::vector<bool> any_passed(std::span<const uint32_t> results);
+
 }  // namespace gnomon

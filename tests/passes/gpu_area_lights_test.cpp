@@ -48,8 +48,8 @@ struct Sampled {
   std::vector<std::string> warnings;
 };
 
-Sampled sample(const std::string& graph, const Scene& scene, const RenderSettings& s,
-               const Values& set = {}) {
+Sampled sample(const std::string& graph, const Scene& scene, const RenderSettings& s, const Values& set = {},
+               bool again = true) {
   const size_t messages = validation_messages(*device()).size();
   Renderer renderer(device(), std::make_shared<Scene>(scene), load_graph(find_graph(graph), set), s);
   Sampled result;
@@ -60,7 +60,7 @@ Sampled sample(const std::string& graph, const Scene& scene, const RenderSetting
   renderer.render(TimingMode::none);
   result.first = read();
   result.facts = renderer.facts();
-  renderer.render(TimingMode::overlapped);
+  if (again) renderer.render(TimingMode::overlapped);
   result.second = read();
   result.second_facts = renderer.facts();
   result.warnings = renderer.warnings();
@@ -100,19 +100,17 @@ TEST(AreaLights, PenumbraOfASquareHasTheClosedForm) {
   const RenderSettings s = settings(true);
   const Sampled result =
       sample("area_uniform", scene, s,
-             {{"samples", int64_t{4096}}, {"pattern", "sobol"}, {"shadow_map", int64_t{512}}});
+             {{"samples", int64_t{4096}}, {"pattern", "sobol"}, {"shadow_map", int64_t{512}}}, false);
   EXPECT_EQ(result.facts.at("light.light_samples"), 4096);
   EXPECT_LT(rmse_to_closed_form(result.first, scene, s), 0.006);
-  EXPECT_EQ(result.first, result.second);
 }
 
 TEST(AreaLights, ErrorFallsWithTheNumberOfSamples) {
   const Scene scene = overhead(square_light(kLightSide));
   const RenderSettings s = settings(true);
   double before = 1;
-  for (const int64_t n : {4, 16, 64, 256}) {
-    const Sampled result = sample("area_uniform", scene, s,
-                                  {{"samples", n}, {"pattern", "sobol"}, {"shadow_map", int64_t{2048}}});
+  for (const int64_t n : {4, 16, 64}) {
+    const Sampled result = sample("area_uniform", scene, s, {{"samples", n}, {"pattern", "sobol"}}, false);
     const double error = rmse_to_closed_form(result.first, scene, s);
     EXPECT_LT(error, 0.75 * before) << n;
     before = error;
@@ -123,7 +121,7 @@ TEST(AreaLights, ErrorFallsWithTheNumberOfSamples) {
 TEST(AreaLights, AdaptiveSamplingReachesTheClosedFormWithFewerSamples) {
   Scene scene = overhead(square_light(kLightSide));
   scene.cameras[0] = analytic::camera({2.6, 1.6, 2.6}, {1.2, 0, 1.2});
-  const RenderSettings s = settings(true, 480, 360);
+  const RenderSettings s = settings(true, 320, 240);
   const double uniform = rmse_to_closed_form(sample("area_uniform", scene, s).first, scene, s);
   const Sampled rb = sample("area_adaptive_rb", scene, s);
   EXPECT_LT(rmse_to_closed_form(rb.first, scene, s), 1.3 * uniform);
@@ -254,9 +252,9 @@ TEST(AreaLights, RefinementKeepsMapsToo) {
 // Error of a graph against the ray tracer, over counted pixels of all lights.
 double error_to_rays(const std::string& graph, Scene scene, const Values& set) {
   scene.cameras[0] = analytic::camera({2.6, 1.6, 2.6}, {1.2, 0, 1.2});
-  const RenderSettings s = settings(true, 240, 180);
+  const RenderSettings s = settings(true, 160, 120);
   ReferenceSettings r;
-  r.width = s.width, r.height = s.height, r.samples = 1024;
+  r.width = s.width, r.height = s.height, r.samples = 400;
   const Reference reference = ReferenceTracer(scene).trace(r);
   const auto v = hard_shadow::visibility(graph, scene, s, set);
   double sum = 0, count = 0;
@@ -277,7 +275,9 @@ TEST(AreaLights, ShapesFollowTheRayTracer) {
   const AreaLight polygon = polygon_light({{-0.9, -0.5}, {0.9, -0.5}, {0.0, 0.8}});
   for (const AreaLight& area : {disc, sphere, polygon}) {
     const Scene scene = overhead(area);
-    EXPECT_LT(error_to_rays("area_uniform", scene, {{"samples", int64_t{256}}, {"pattern", "sobol"}}), 0.02)
+    EXPECT_LT(error_to_rays("area_uniform", scene,
+                            {{"samples", int64_t{144}}, {"pattern", "sobol"}, {"shadow_map", int64_t{512}}}),
+              0.02)
         << int(area.shape);
     EXPECT_LT(error_to_rays("area_adaptive_rb", scene, {{"soft_discontinuity", int64_t{4}}}), 0.03)
         << int(area.shape);
@@ -292,8 +292,10 @@ TEST(AreaLights, ATexturedLightIsWeighedByItsEmission) {
   half.width = 2, half.height = 1, half.nearest = true;
   half.rgba = {0, 0, 0, 255, 255, 255, 255, 255};
   scene.textures.push_back(half);
-  EXPECT_LT(error_to_rays("area_uniform", scene, {{"samples", int64_t{256}}, {"pattern", "grid_centres"}}),
-            0.02);
+  EXPECT_LT(
+      error_to_rays("area_uniform", scene,
+                    {{"samples", int64_t{144}}, {"pattern", "grid_centres"}, {"shadow_map", int64_t{512}}}),
+      0.02);
   EXPECT_LT(error_to_rays("area_adaptive_rb", scene, {{"soft_discontinuity", int64_t{4}}}), 0.04);
 }
 
@@ -303,7 +305,9 @@ TEST(AreaLights, SeveralLightsAreSampledSideBySide) {
   second.area = square_light(1.5);
   scene.lights.push_back(second);
   scene.lights.push_back(analytic::light(LightType::directional, {1, 3, 0}));
-  EXPECT_LT(error_to_rays("area_uniform", scene, {{"samples", int64_t{256}}, {"pattern", "sobol"}}), 0.035);
+  EXPECT_LT(error_to_rays("area_uniform", scene,
+                          {{"samples", int64_t{144}}, {"pattern", "sobol"}, {"shadow_map", int64_t{512}}}),
+            0.035);
   EXPECT_LT(error_to_rays("area_adaptive_rb", scene, {}), 0.04);
 }
 

@@ -8,6 +8,8 @@
 #include <random>
 #include <set>
 
+#include "engine/error.h"
+
 namespace gnomon {
 namespace {
 
@@ -164,6 +166,11 @@ TEST(LightQuads, ALightThatNoGridPointHitsHasNoSamples) {
                    {[](glm::dvec2) { return false; }, [](glm::dvec2, glm::dvec2) { return 0.1; }});
   EXPECT_TRUE(quads.questions().empty());
   EXPECT_TRUE(quads.samples().empty());
+}
+
+TEST(LightQuads, AQueryThatIsNotAnsweredIsAnError) {
+  EXPECT_EQ(any_passed(std::vector<uint32_t>{7, 1, 0, 1}), (std::vector<bool>{true, false}));
+  EXPECT_THROW(any_passed(std::vector<uint32_t>{7, 1, 0, 0}), Error);
 }
 
 }  // namespace
