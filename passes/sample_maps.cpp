@@ -1,10 +1,12 @@
 #include "passes/sample_maps.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "engine/frame_data.h"
 #include "engine/light_fit.h"
+#include "engine/sobol.h"
 
 namespace gnomon {
 namespace {
@@ -21,6 +23,18 @@ struct SampleData {  // offset and weight, window
 glm::dvec3 offset_in(const Scene& scene, const LightFace& face, const glm::dvec2& local) {
   const glm::dmat3 turn(face.light_from_world * scene.lights[face.light].world_from_light);
   return turn * glm::dvec3(local, 0.0);
+}
+
+// A part of a texel, within half of one, that a sample's window is moved by: where windows converge the
+// texels of all samples would coincide, and so would their errors.
+glm::dvec2 texel_shift(const glm::dvec2& local) {
+  const auto bits = [](double value) {
+    const uint64_t all = std::bit_cast<uint64_t>(value + 0.0);  // + 0: one zero, not two
+    return hash_combine(uint32_t(all), uint32_t(all >> 32));
+  };
+  const uint32_t mixed = hash_combine(bits(local.x), bits(local.y));
+  constexpr double kHalf = 65536.0;
+  return glm::dvec2(mixed & 0xFFFFu, mixed >> 16) / kHalf - 0.5;
 }
 
 }  // namespace
@@ -48,6 +62,7 @@ ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache, doub
 
 void SampleMaps::prepare(Environment& e, uint32_t capacity, bool split) {
   layers_ = e.shape("maps").layers;
+  size_ = e.shape("maps").extent.width;
   RasterState state;
   state.vertex = "sample_maps.vert.glsl";
   state.depth = VK_FORMAT_D32_SFLOAT;
@@ -86,8 +101,11 @@ void SampleMaps::write(const Context& c, uint32_t face, uint32_t first, std::spa
   auto* out = reinterpret_cast<SampleData*>(samples_.bytes().data()) + first;
   for (const LightPoint& point : points) {
     const glm::dvec3 offset = offset_in(c.scene().scene(), c.scene().faces()[face], point.local);
+    const LightFace& wide = widened_[face];
+    const glm::dvec2 texel = 2.0 * glm::dvec2(wide.half_width, wide.half_height) / double(size_);
+    const glm::dvec2 shift = converge_[face] > 0 ? texel * texel_shift(point.local) : glm::dvec2(0.0);
     out->offset_weight = glm::vec4(offset, point.weight);
-    (out++)->window = glm::vec4(-converge_[face] * glm::dvec2(offset), point.layer, 0.0);
+    (out++)->window = glm::vec4(shift - converge_[face] * glm::dvec2(offset), point.layer, 0.0);
   }
 }
 

@@ -50,7 +50,7 @@ class SampleMaps {
   std::vector<LightFace> widened_;  // AreaFace, per face
   std::vector<double> converge_;
   bool begun_ = false;
-  uint32_t layers_ = 0;
+  uint32_t layers_ = 0, size_ = 1;
 };
 
 // Per light: can a caster's shadow of it be in view (SceneFacts)? Where not, no map is needed. All, where the
