@@ -168,10 +168,6 @@ void Context::fill(const std::string& buffer_port, uint32_t value, uint64_t offs
   vkCmdFillBuffer(commands_, physical(buffer_port).buffer.handle(), offset, size, value);
 }
 
-void Context::update(const std::string& buffer_port, std::span<const std::byte> bytes, uint64_t offset) {
-  vkCmdUpdateBuffer(commands_, physical(buffer_port).buffer.handle(), offset, bytes.size(), bytes.data());
-}
-
 void Context::clear(const std::string& image_port, uint32_t value) {
   const GpuImage& image = physical(image_port).image;
   VkClearColorValue color;

@@ -122,8 +122,6 @@ class Context {
   void dispatch_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset = 0);
   void fill(const std::string& buffer_port, uint32_t value, uint64_t offset = 0,
             uint64_t size = VK_WHOLE_SIZE);
-  // At most 64 KiB into a buffer that the pass declares transfer_write. Bytes in multiples of 4.
-  void update(const std::string& buffer_port, std::span<const std::byte> bytes, uint64_t offset = 0);
   // All texels of an image of 32-bit integers or floats (its bits) that the pass declares transfer_write.
   void clear(const std::string& image_port, uint32_t value);
   // Tightly packed texels to such an image's mip 0: all of it, or rows of a layer.

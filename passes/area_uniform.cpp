@@ -36,11 +36,9 @@ class AreaUniform : public Pass {
 
   void prepare(Environment& e) override {
     test_.prepare(e, "area_uniform.glsl");
-    needed_ = casts_shadow_in_view(e);
-    const auto& faces = e.gpu_scene().faces();
+    choose_points(e);
     uint32_t capacity = 0;
-    for (const LightFace& face : faces)
-      capacity += uint32_t(points(e.scene(), e.params(), face.light).size());
+    for (const LightFace& face : e.gpu_scene().faces()) capacity += uint32_t(points_[face.light].size());
     maps_.prepare(e, capacity);
     cached_ = e.params().flag("cache") && capacity <= maps_.layers();
     if (e.params().flag("cache") && !cached_)
@@ -54,13 +52,11 @@ class AreaUniform : public Pass {
     samples_ = rendered_ = 0;
     uint32_t first = 0;
     for (uint32_t face = 0; face < faces.size(); ++face) {
-      std::vector<LightPoint> all;
-      if (needed_[faces[face].light]) all = points(c.scene().scene(), c.params(), faces[face].light);
+      const std::vector<LightPoint>& all = points_[faces[face].light];
       maps_.write(c, face, first, all);
       all.empty() ? test(c, face, {}, kFirst | kLast, 0) : sample(c, face, first, all);
       first += uint32_t(all.size());
     }
-    filled_ = true;
   }
 
   std::map<std::string, double> figures() const override {
@@ -68,12 +64,18 @@ class AreaUniform : public Pass {
   }
 
  private:
-  static std::vector<LightPoint> points(const Scene& scene, const Params& params, uint32_t light) {
-    return light_points(scene, light, uint32_t(params.integer("samples")), params.choice("pattern"));
+  // Once: a light may move, but keeps its shape.
+  void choose_points(const Environment& e) {
+    const std::vector<bool> needed = casts_shadow_in_view(e);
+    const auto n = uint32_t(e.params().integer("samples"));
+    const std::string& pattern = e.params().choice("pattern");
+    points_.resize(needed.size());
+    for (uint32_t light = 0; light < needed.size(); ++light)
+      if (needed[light]) points_[light] = light_points(e.scene(), light, n, pattern);
   }
 
   bool keeps_maps(const Context& c, uint32_t light) const {
-    return cached_ && filled_ && !c.scene().light_changed(light) && !c.scene().casters_changed();
+    return cached_ && !c.scene().light_changed(light) && !c.scene().casters_changed();
   }
 
   // Batch by batch: as many maps as there are layers, then the pixels' tests against them.
@@ -113,8 +115,8 @@ class AreaUniform : public Pass {
 
   SampleMaps maps_;
   AreaShader test_;
-  std::vector<bool> needed_;  // per light
-  bool cached_ = false, filled_ = false;
+  std::vector<std::vector<LightPoint>> points_;  // per light; none where nothing casts a shadow in view
+  bool cached_ = false;
   double samples_ = 0, rendered_ = 0;
 };
 

@@ -26,8 +26,10 @@ glm::dvec3 offset_in(const Scene& scene, const LightFace& face, const glm::dvec2
 }
 
 // A part of a texel, within half of one, that a sample's window is moved by: where windows converge the
-// texels of all samples would coincide, and so would their errors.
+// texels of all samples would coincide, and so would their errors. The centre's stays: a light without size
+// has the hard techniques' map.
 glm::dvec2 texel_shift(const glm::dvec2& local) {
+  if (local == glm::dvec2(0.0)) return local;
   const auto bits = [](double value) {
     const uint64_t all = std::bit_cast<uint64_t>(value + 0.0);  // + 0: one zero, not two
     return hash_combine(uint32_t(all), uint32_t(all >> 32));
@@ -84,11 +86,10 @@ void SampleMaps::begin(Context& c) {
   const std::vector<LightFace>& faces = c.scene().faces();
   widened_.resize(faces.size()), converge_.resize(faces.size());
   for (uint32_t i = 0; i < faces.size(); ++i) {
-    if (begun_ && !c.scene().light_changed(faces[i].light) && !c.scene().casters_changed()) continue;
+    if (!c.scene().light_changed(faces[i].light) && !c.scene().casters_changed()) continue;
     const AreaFace area = area_face(c.scene().scene(), faces[i]);
     widened_[i] = area.face, converge_[i] = area.converge;
   }
-  begun_ = true;
   auto* out = reinterpret_cast<AreaData*>(areas_.bytes().data());
   for (const FaceData& data : face_data(widened_, glm::dvec3(c.scene().camera().world_from_camera[3]))) {
     std::copy(std::begin(data.rows), std::end(data.rows), out->rows);

@@ -49,7 +49,6 @@ class SampleMaps {
   Buffer areas_, samples_;          // host-visible
   std::vector<LightFace> widened_;  // AreaFace, per face
   std::vector<double> converge_;
-  bool begun_ = false;
   uint32_t layers_ = 0, size_ = 1;
 };
 

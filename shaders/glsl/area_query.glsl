@@ -2,15 +2,10 @@
 // and the parameters of passes/sample_maps.h.
 #include "lib/octahedral.glsl"
 #include "light_samples.glsl"
+#include "pixel_state.glsl"
 
 // A dispatch is for one face of a light and `count` samples from `first` on, the first of which is layer `layer` of the maps.
 layout(push_constant) uniform Push { uint light, face, first, count, layer, bit; uvec2 part; } push;
-
-const int PIXEL_BACKGROUND = 0;  // no geometry: lit
-const int PIXEL_AWAY = 1;        // faces away from the light's centre: in shadow
-const int PIXEL_OUTSIDE = 2;     // outside the light's frustum: lit, its falloff decides
-const int PIXEL_INSIDE = 3;      // the samples decide
-const int PIXEL_OTHERS = 4;      // another face of the light sees it
 
 struct AreaReceiver {
   LightFace face;
@@ -35,8 +30,6 @@ int make_area_receiver(ivec2 pixel, out AreaReceiver receiver) {
   vec3 seen = face_project(faces[push.face], receiver.q);
   return face_sees(seen) ? PIXEL_INSIDE : PIXEL_OUTSIDE;
 }
-
-float unmapped_visibility(int state) { return state == PIXEL_AWAY ? 0.0 : 1.0; }
 
 // The receiver's plane in the map of sample `s`, bias included.
 Receiver plane_in(AreaReceiver receiver, LightSample s) {

@@ -3,15 +3,11 @@
 #include "frame.glsl"
 #include "lib/octahedral.glsl"
 #include "lib/receiver_plane.glsl"
+#include "pixel_state.glsl"
 
 // A dispatch is for one light. Its index, and the only face of a light that has one, come as push constants, so that every
 // load that depends on them alone is uniform. `part`: of a pass that does its work in several dispatches.
 layout(push_constant) uniform Push { uint light, face; uvec2 part; } push;
-
-const int PIXEL_BACKGROUND = 0;  // no geometry: lit
-const int PIXEL_AWAY = 1;        // the geometric normal faces away from the light: in shadow, whatever the map says
-const int PIXEL_OUTSIDE = 2;     // outside the map: lit, the light's own falloff decides
-const int PIXEL_INSIDE = 3;      // the map decides
 
 struct Query {
   int face;         // layer of the map
@@ -108,5 +104,3 @@ vec4 lit_quad(Query query, ivec2 texel) {
                                   vec4(high.y, high.y, low.y, low.y), ENCODING == ENCODING_LINEAR);
   return vec4(lessThanEqual(receiver, map));
 }
-
-float unmapped_visibility(int state) { return state == PIXEL_AWAY ? 0.0 : 1.0; }
