@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "bench/report_rows.h"
@@ -13,12 +15,13 @@ namespace {
 
 using nlohmann::json;
 
-std::string identity(const json& row) {
+// What was measured. A failed row has no measured reference: it is matched without.
+std::string identity(const json& row, bool with_reference) {
   json parts = json::array();
-  for (const char* name : {"scene", "graph", "vars", "size", "camera", "device", "reference"})
+  for (const char* name : {"scene", "graph", "vars", "size", "camera", "device"})
     parts.push_back(row.contains(name) && !row[name].is_null() ? row[name] : json(""));
-  // A failed row has no measured reference: it is matched without.
-  if (!is_ok(row)) parts.back() = "";
+  if (with_reference)
+    parts.push_back(row.contains("reference") && !row["reference"].is_null() ? row["reference"] : json(""));
   parts.push_back(figure_at(row, "/sequence/frames").value_or(0));
   return parts.dump();
 }
@@ -29,31 +32,50 @@ std::string place_text(const json& row) {
                      row_label(row));
 }
 
-// `other` matches `row`, where a failed row matches whatever its reference was.
-const json* find_match(const std::vector<json>& rows, const json& row) {
-  const std::string wanted = identity(row);
-  json failed = row;
-  failed["status"] = "error";
-  const std::string failed_identity = identity(failed);
-  const json* fallback = nullptr;
-  for (const json& other : rows) {
-    if (identity(other) == wanted) return &other;
-    json bare = other;
-    bare["status"] = "error";
-    if ((!is_ok(other) || !is_ok(row)) && identity(bare) == failed_identity) fallback = &other;
+// Finds the row of an earlier run that measured the same.
+class EarlierRows {
+ public:
+  explicit EarlierRows(const std::vector<json>& rows) {
+    for (const json& row : rows) {
+      exact_.emplace(identity(row, true), &row);
+      bare_.emplace(identity(row, false), &row);
+    }
   }
-  return fallback;
+  const json* match(const json& row) const {
+    if (const auto found = exact_.find(identity(row, true)); found != exact_.end()) return found->second;
+    const auto found = bare_.find(identity(row, false));
+    if (found == bare_.end() || (is_ok(*found->second) && is_ok(row))) return nullptr;
+    return found->second;
+  }
+
+ private:
+  std::map<std::string, const json*> exact_, bare_;
+};
+
+struct Ratios {
+  double median = 0, low = 0, high = 0;
+};
+std::optional<Ratios> ratios_of(const json& row) {
+  const auto median = figure_at(row, "/ratio/median");
+  const auto low = figure_at(row, "/ratio/ci95/0"), high = figure_at(row, "/ratio/ci95/1");
+  if (!median || !low || !high) return std::nullopt;
+  return Ratios{*median, *low, *high};
 }
 
-void compare_time(const json& before, const json& after, double tolerance, std::vector<Change>& changes) {
-  const auto old_median = figure_at(before, "/ratio/median"), new_median = figure_at(after, "/ratio/median");
-  const auto old_low = figure_at(before, "/ratio/ci95/0"), old_high = figure_at(before, "/ratio/ci95/1");
-  const auto new_low = figure_at(after, "/ratio/ci95/0"), new_high = figure_at(after, "/ratio/ci95/1");
-  if (!old_median || !new_median || !old_low || !old_high || !new_low || !new_high) return;
-  const bool slower = *new_low > *old_high && *new_median > *old_median * (1 + tolerance);
-  const bool faster = *new_high < *old_low && *new_median < *old_median / (1 + tolerance);
+// Divided by itself: 1 in every round, of any run.
+bool is_baseline(const Ratios& ratios) { return ratios.low == 1 && ratios.high == 1; }
+
+void compare_time(const json& before, const json& after, double tolerance, Comparison& comparison) {
+  const auto was = ratios_of(before), is = ratios_of(after);
+  if (!was || !is || (is_baseline(*was) && is_baseline(*is))) return;
+  const bool above = is->low > was->high, below = is->high < was->low;
+  ++comparison.intervals;
+  if (!above && !below) ++comparison.overlapping;
+  const bool slower = above && is->median > was->median * (1 + tolerance);
+  const bool faster = below && is->median < was->median / (1 + tolerance);
   if (slower || faster)
-    changes.push_back({Change::Kind::time, place_text(after), "ratio", *old_median, *new_median, slower});
+    comparison.changes.push_back(
+        {Change::Kind::time, place_text(after), "ratio", was->median, is->median, slower});
 }
 
 void compare_errors(const json& before, const json& after, std::vector<Change>& changes) {
@@ -86,12 +108,17 @@ bool Comparison::regressed() const {
   return std::any_of(changes.begin(), changes.end(), [](const Change& change) { return change.worse; });
 }
 
+double Comparison::overlap() const {
+  return intervals == 0 ? 1 : static_cast<double>(overlapping) / static_cast<double>(intervals);
+}
+
 Comparison compare_results(const std::vector<json>& before, const std::vector<json>& after,
                            double tolerance) {
   Comparison comparison;
   std::set<const json*> met;
+  const EarlierRows earlier(before);
   for (const json& row : after) {
-    const json* const old = find_match(before, row);
+    const json* const old = earlier.match(row);
     if (old == nullptr) continue;
     met.insert(old);
     const bool ran = is_ok(*old), runs = is_ok(row);
@@ -100,7 +127,7 @@ Comparison compare_results(const std::vector<json>& before, const std::vector<js
           {Change::Kind::failure, place_text(row), row.value("status", "?"), 0, 0, !runs});
     if (!ran || !runs) continue;
     ++comparison.compared;
-    compare_time(*old, row, tolerance, comparison.changes);
+    compare_time(*old, row, tolerance, comparison);
     compare_errors(*old, row, comparison.changes);
   }
   for (const json& row : before)
@@ -116,6 +143,9 @@ std::string to_table(const Comparison& comparison) {
   for (const Change& change : comparison.changes) text += line_of(change);
   const auto worse = std::count_if(comparison.changes.begin(), comparison.changes.end(),
                                    [](const Change& change) { return change.worse; });
+  if (comparison.intervals > 0)
+    text += fmt::format("{} of {} intervals of the ratio to the baseline overlap ({:.1f} %)\n",
+                        comparison.overlapping, comparison.intervals, 100 * comparison.overlap());
   return text + fmt::format("{} rows compared, {} changes, {} for the worse\n", comparison.compared,
                             comparison.changes.size(), worse);
 }

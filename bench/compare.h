@@ -17,8 +17,13 @@ struct Change {
 
 struct Comparison {
   size_t compared = 0;          // rows that both runs have with status ok
+  size_t intervals = 0;         // of these, those with a ratio to another row in both runs,
+  size_t overlapping = 0;       // and those whose 95 % intervals of the ratio overlap
   std::vector<Change> changes;  // in the order of the new rows; what is missing last
   bool regressed() const;
+  // Share of the intervals that overlap; 1 when there are none. Two runs of the same program on the same
+  // machine should give 0.95 or more, else the intervals promise too much.
+  double overlap() const;
 };
 
 // Rows are the same when scene, size, camera, device, reference, sequence length and the graph with all its

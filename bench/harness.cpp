@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -42,8 +43,26 @@ Row row_of(const Suite& suite, const BenchOptions& options, const Place& place, 
                    suite.samples,      row.device.name,
                    row.device.driver,  version()};
   if (suite.frames > 0) identity.push_back({suite.frames, suite.fps});
+  if (suite.seconds > 0) identity.push_back({{"seconds", suite.seconds}, {"least", suite.least}});
   row.key = canonical_hash(identity);
   return row;
+}
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+// Of the frames that count.
+double seconds_of(const Samples& samples) {
+  double ms = 0;
+  for (const auto* frames : {&samples.plain, &samples.overlapped, &samples.isolated})
+    for (const FrameTiming& frame : *frames) ms += frame.frame_ms;
+  return ms / 1e3;
 }
 
 std::set<std::string> finished_keys(const fs::path& results) {
@@ -97,6 +116,8 @@ class SuiteRun {
             {"warmup", suite_.warmup},
             {"repeat", suite_.repeat},
             {"instrumented", suite_.instrumented},
+            {"seconds", suite_.seconds},
+            {"least", suite_.least},
             {"frames", suite_.frames},
             {"fps", suite_.fps},
             {"images", suite_.images},
@@ -186,8 +207,10 @@ class SuiteRun {
 
   Entry open(const Place& place, Stage& stage, size_t config, bool wanted) const {
     Entry entry{config, wanted, row_of(suite_, options_, place, suite_.configs[config]), nullptr};
+    const Stopwatch watch;
     try {
       entry.subject = stage.open(suite_.configs[config]);
+      entry.row.harness_seconds["open"] = watch.seconds();
     } catch (const std::exception& error) {
       entry.row.status = std::string("error: ") + error.what();
     }
@@ -197,14 +220,17 @@ class SuiteRun {
   void measure(std::vector<Entry>& entries, Stage& stage, const std::string& scene) const {
     std::vector<Subject*> subjects;
     std::vector<Entry*> open_entries;
+    RoundSettings settings{suite_.warmup, suite_.repeat, suite_.instrumented};
+    settings.seconds = suite_.seconds;
+    settings.least = suite_.least;
     size_t wanted = 0;
     for (Entry& entry : entries) {
       wanted += entry.wanted ? 1 : 0;
       if (!entry.subject) continue;
+      if (&entry == &entries.front()) settings.baseline = 0;
       subjects.push_back(entry.subject.get());
       open_entries.push_back(&entry);
     }
-    RoundSettings settings{suite_.warmup, suite_.repeat, suite_.instrumented};
     settings.sequence = suite_.frames > 0;
     if (settings.sequence) settings.repeat = suite_.frames;
     FrameHook on_frame;
@@ -217,6 +243,7 @@ class SuiteRun {
     std::vector<Samples> samples = run_rounds(
         subjects, settings, [&](double part) { report(note, part * double(wanted)); }, on_frame);
     for (size_t i = 0; i < open_entries.size(); ++i) {
+      open_entries[i]->row.harness_seconds["frames"] = seconds_of(samples[i]);
       if (!samples[i].error.empty()) open_entries[i]->row.status = "error: " + samples[i].error;
       open_entries[i]->row.samples = std::move(samples[i]);
     }
@@ -244,8 +271,10 @@ class SuiteRun {
     if (entry.row.status != "ok" || !entry.subject) return;
     const std::vector<double> ratios = pair_ratios(entry.row.samples.frame_ms(), base_ms);
     if (!ratios.empty()) entry.row.ratio = Ratio{label(suite_.configs[baseline]), summarise(ratios)};
+    const Stopwatch watch;
     try {
       stage.finish(suite_.configs[entry.config], *entry.subject, entry.row);
+      entry.row.harness_seconds["error"] = watch.seconds();
     } catch (const std::exception& error) {
       entry.row.status = std::string("error: ") + error.what();
     }

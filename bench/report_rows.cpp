@@ -98,7 +98,12 @@ std::optional<ErrorFigure> error_of(const json& row, const std::string& metric) 
   const auto value = figure_at(row, "/error/" + metric);
   if (!value) return std::nullopt;
   const double error = less_is_better(metric, *value);
-  return ErrorFigure{error, error, error};
+  const auto low = figure_at(row, "/error/ci95/" + metric + "/0");
+  const auto high = figure_at(row, "/error/ci95/" + metric + "/1");
+  if (!low || !high) return ErrorFigure{error, error, error};
+  const auto [least, most] = std::minmax({less_is_better(metric, *low), less_is_better(metric, *high)});
+  const bool around_zero = *low < 0 && *high > 0;  // of the bias, whose magnitude is shown
+  return ErrorFigure{error, around_zero ? 0 : least, most};
 }
 
 }  // namespace gnomon

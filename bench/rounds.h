@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,16 @@ struct RoundSettings {
   // Each technique plays from the scene's time 0 after the warm-up, which it has forgotten: the rounds are
   // the sequence's frames. Those with time stamps are its first ones again, once for each mode.
   bool sequence = false;
+
+  // Seconds of wall-clock time for each technique's frames of one mode; 0: no limit, and none for sequences.
+  // A technique takes part in the rounds that fit, at least in `least` (of those with stamps: in one), at
+  // most in those stated above; warm-up frames after the first, which compiles, are left out when they do not
+  // fit. Time alone decides, never the spread of the samples: rounds that end when an interval happens to be
+  // narrow give intervals that promise too much.
+  double seconds = 0;
+  uint32_t least = 5;
+  // The subject by whose frames the others are divided: it takes part in a round as long as any other does.
+  std::optional<size_t> baseline = std::nullopt;
 };
 
 // What one technique's rounds gave; index = round. A technique that throws takes no further part.

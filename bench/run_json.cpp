@@ -71,7 +71,8 @@ json gpu_of(const std::vector<FrameTiming>& frames) {
 
 json left_out_of(const std::vector<LeftOutPass>& passes) {
   json rows = json::array();
-  for (const LeftOutPass& pass : passes) rows.push_back({{"pass", pass.pass}, {"reason", pass.reason}});
+  for (const LeftOutPass& pass : passes)
+    rows.push_back({{"pass", pass.pass}, {"part", pass.part}, {"reason", pass.reason}});
   return rows;
 }
 
@@ -163,6 +164,7 @@ json to_json(const Row& row) {
       {"warnings", row.warnings},
       {"facts", row.facts},
       {"status", row.status}};
+  if (!row.harness_seconds.empty()) object["harness_seconds"] = row.harness_seconds;
   if (!row.images.empty()) object["images"] = row.images;
   if (row.sequence) object.update(to_json(*row.sequence));
   if (!row.key.empty()) object["key"] = row.key;

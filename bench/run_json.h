@@ -47,6 +47,8 @@ struct Row {
   std::optional<SequenceResult> sequence;  // frames in order
   uint64_t nonfinite = 0;                  // NaN or Inf values in color and visibility
   std::optional<Ratio> ratio;
+  std::map<std::string, double>
+      harness_seconds;                        // wall-clock time that `bench` spent: "open", "frames", "error"
   std::map<std::string, std::string> images;  // what is shown -> its file beside results.jsonl
   std::string status = "ok";                  // or "error: ..."
 };

@@ -46,6 +46,7 @@ std::string to_string(const StabilityCase& test);
 struct StabilityOptions {
   bool quick = false;                                                      // small images and maps
   uint64_t memory = uint64_t{1} << 30;                                     // RenderSettings::memory
+  std::vector<StabilityCase> skipped;                                      // left out of the walk
   Extent size() const { return quick ? Extent{48, 36} : Extent{96, 72}; }  // pixels, of the base case
   int64_t shadow_map() const { return quick ? 128 : 256; }                 // texels
   uint32_t samples() const { return quick ? 64 : 256; }                    // of the reference's area light
@@ -90,8 +91,9 @@ bool follows_light_size(const std::shared_ptr<Device>& device, const std::filesy
 
 enum class StabilityVerdict {
   holds,     // error at most 1.1 x that of the base case, plus two pixels
-  degrades,  // more, but less than that of the best image of one value
+  warned,    // more, and a warning at load said so: outside the technique's domain
   refuses,   // says what cannot be had, before anything is rendered
+  degrades,  // more, without a word, but less than that of the best image of one value
   fails
 };
 std::string to_string(StabilityVerdict verdict);
@@ -103,6 +105,7 @@ struct StabilityFinding {
       false;  // crash, time-out, non-finite, out of range, not repeatable, validation: whatever the error
   std::string reason;  // empty when it holds
 };
+// Of the warnings those count that the base case does not have.
 StabilityFinding judge_stability(const StabilityCase& test, const StabilityMeasurement& measured,
                                  const StabilityMeasurement& base);
 

@@ -35,6 +35,13 @@ std::string breach(const StabilityMeasurement& m) {
   return {};
 }
 
+// The first warning that the base case does not have; empty: none.
+std::string own_warning(const StabilityMeasurement& m, const StabilityMeasurement& base) {
+  for (const std::string& warning : m.warnings)
+    if (std::find(base.warnings.begin(), base.warnings.end(), warning) == base.warnings.end()) return warning;
+  return {};
+}
+
 double error_ratio(const StabilityFinding& finding, const StabilityMeasurement& base) {
   return finding.measured.pixels > 0 ? finding.measured.rmse / bound(finding.measured, base) : 0;
 }
@@ -45,10 +52,12 @@ std::string to_string(StabilityVerdict verdict) {
   switch (verdict) {
     case Verdict::holds:
       return "holds";
-    case Verdict::degrades:
-      return "degrades";
+    case Verdict::warned:
+      return "warned";
     case Verdict::refuses:
       return "refuses";
+    case Verdict::degrades:
+      return "degrades";
     case Verdict::fails:
       break;
   }
@@ -71,6 +80,10 @@ StabilityFinding judge_stability(const StabilityCase& test, const StabilityMeasu
   finding.verdict = useless ? Verdict::fails : Verdict::degrades;
   finding.reason = fmt::format("RMSE {:.3f}, {:.3f} at the base case", measured.rmse, base.rmse);
   if (useless) finding.reason += fmt::format(", {:.3f} of an image of one value", measured.constant_rmse);
+  if (const std::string warning = own_warning(measured, base); !warning.empty()) {
+    finding.verdict = Verdict::warned;
+    finding.reason += "; " + warning;
+  }
   return finding;
 }
 
@@ -81,17 +94,20 @@ std::vector<StabilityCase> single_cases(const StabilityOptions& options,
   std::vector<StabilityCase> cases;
   for (const StabilityAxis& axis : stability_axes()) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), axis.name) == wanted.end()) continue;
-    for (const std::string& value : options.quick ? axis.quick : axis.values)
-      cases.push_back({{axis.name, value}});
+    for (const std::string& value : options.quick ? axis.quick : axis.values) {
+      const StabilityCase test = {{axis.name, value}};
+      const auto& skipped = options.skipped;
+      if (std::find(skipped.begin(), skipped.end(), test) == skipped.end()) cases.push_back(test);
+    }
   }
   return cases;
 }
 
-// Of each axis the point with the largest error that is no failure; of those the worst, each two together.
+// Of each axis the point with the largest error inside the technique's domain; of those the worst, each two together.
 std::vector<StabilityCase> worst_pairs(const StabilityRow& row) {
   std::map<std::string, const StabilityFinding*> worst;
   for (const StabilityFinding& f : row.findings) {
-    if (f.verdict == Verdict::fails || f.verdict == Verdict::refuses || f.test.size() != 1) continue;
+    if (f.verdict == Verdict::fails || f.verdict == Verdict::refuses || f.verdict == Verdict::warned || f.test.size() != 1) continue;
     const StabilityFinding*& best = worst[f.test.front().first];
     if (best == nullptr || error_ratio(f, row.base) > error_ratio(*best, row.base)) best = &f;
   }
@@ -141,20 +157,6 @@ StabilityRow walk_stability(const fs::path& graph, bool area, const StabilityOpt
 
 namespace {
 
-int severity(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::holds:
-      return 0;
-    case Verdict::refuses:
-      return 1;
-    case Verdict::degrades:
-      return 2;
-    case Verdict::fails:
-      break;
-  }
-  return 3;
-}
-
 std::string axis_name(const StabilityCase& test) {
   if (test.empty()) return "base";
   return test.size() == 1 ? test.front().first : "pairs";
@@ -183,7 +185,7 @@ std::vector<const StabilityFinding*> along(const StabilityRow& row, const std::s
 const StabilityFinding* worst_of(const std::vector<const StabilityFinding*>& findings) {
   const StabilityFinding* worst = nullptr;
   for (const StabilityFinding* f : findings)
-    if (worst == nullptr || severity(f->verdict) > severity(worst->verdict)) worst = f;
+    if (worst == nullptr || f->verdict > worst->verdict) worst = f;
   return worst;
 }
 
@@ -249,7 +251,7 @@ std::map<std::string, std::string> stated_domain(const StabilityRow& row) {
     const std::string good = values_with(findings, Verdict::holds);
     std::string text = "holds at " + (good.empty() ? "no value walked" : good);
     bool all = true;
-    for (const Verdict verdict : {Verdict::degrades, Verdict::refuses, Verdict::fails})
+    for (const Verdict verdict : {Verdict::warned, Verdict::refuses, Verdict::degrades, Verdict::fails})
       if (const std::string values = values_with(findings, verdict); !values.empty())
         text += fmt::format("; {} at {}", to_string(verdict), values), all = false;
     if (!all) domain[axis] = text;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "bench/report_images.h"
@@ -44,6 +45,13 @@ class DeviceSubject final : public Subject {
   Shown shown_;
 };
 
+bool keeps_history(const std::vector<GraphNode>& nodes) {
+  return std::any_of(nodes.begin(), nodes.end(), [](const GraphNode& node) {
+    return keeps_history(node.body) ||
+           std::any_of(node.in.begin(), node.in.end(), [](const auto& in) { return in.second.previous; });
+  });
+}
+
 struct Sequence {       // of a suite
   uint32_t frames = 0;  // 0: none
   SequenceTruth truth;
@@ -53,12 +61,14 @@ class DeviceStage final : public Stage {
  public:
   // `truth`: of the frame whose error is the row's.
   DeviceStage(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene,
-              const RenderSettings& settings, Truth truth, Sequence sequence, fs::path images_of)
+              const RenderSettings& settings, Truth truth, Sequence sequence, uint32_t repeat,
+              fs::path images_of)
       : device_(std::move(device)),
         scene_(std::move(scene)),
         settings_(settings),
         truth_(std::move(truth)),
         sequence_(std::move(sequence)),
+        repeat_(repeat),
         images_of_(std::move(images_of)) {}
 
   std::unique_ptr<Subject> open(const SuiteConfig& config) override {
@@ -84,7 +94,7 @@ class DeviceStage final : public Stage {
     if (sequence_.frames > 0)
       row.sequence = std::move(subject.sequence);
     else
-      subject.show(config);
+      show_still(config, subject);
     const auto& shown = subject.shown();
     row.nonfinite = shown.nonfinite;
     const bool finite_color = shown.color && count_nonfinite(*shown.color) == 0;
@@ -96,11 +106,23 @@ class DeviceStage final : public Stage {
   }
 
  private:
+  // What accumulates over frames is shown as it is after as many as the suite's `repeat`: how many frames
+  // were timed may depend on the machine.
+  void show_still(const SuiteConfig& config, DeviceSubject& subject) const {
+    if (keeps_history(config.graph.nodes)) {
+      subject.renderer().play();
+      subject.renderer().seek(0);
+      for (uint32_t i = 0; i < repeat_; ++i) subject.renderer().render(TimingMode::none);
+    }
+    subject.show(config);
+  }
+
   std::shared_ptr<Device> device_;
   std::shared_ptr<const Scene> scene_;
   RenderSettings settings_;
   Truth truth_;
   Sequence sequence_;
+  uint32_t repeat_;     // frames after which a technique with history is measured
   fs::path images_of_;  // folder of results.jsonl; empty: no images
 };
 
@@ -133,7 +155,7 @@ StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& 
         last > 0 && scene->animation ? std::make_shared<const Scene>(posed(*scene, last)) : scene;
     return std::make_unique<DeviceStage>(
         device, scene, settings, Truth(shown, reference, cache),
-        Sequence{suite.frames, SequenceTruth(scene, reference, cache, settings.frame_seconds)},
+        Sequence{suite.frames, SequenceTruth(scene, reference, cache, settings.frame_seconds)}, suite.repeat,
         suite.images ? out : fs::path());
   };
 }

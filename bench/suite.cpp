@@ -270,6 +270,8 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
   suite.repeat = read_count(object, problems, file.string(), "repeat", suite.repeat, 1, 100000);
   suite.instrumented =
       read_count(object, problems, file.string(), "instrumented", suite.instrumented, 0, 100000);
+  suite.seconds = object.number("seconds", suite.seconds);
+  suite.least = read_count(object, problems, file.string(), "least", suite.least, 1, 100000);
   suite.frames = read_count(object, problems, file.string(), "frames", suite.frames, 0, 100000);
   suite.fps = object.number("fps", suite.fps);
   if (const json* images = object.find("images")) {
@@ -278,6 +280,9 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
     else
       problems.add("'images' must be true or false", file.string(), object.place_of("images"));
   }
+  if (!(suite.seconds >= 0 && suite.seconds <= 1e6))
+    problems.add(fmt::format("'seconds' is {}: must be in 0..1e6", suite.seconds), file.string(),
+                 object.place_of("seconds"));
   if (!(suite.fps > 0 && suite.fps <= 1e6))
     problems.add(fmt::format("'fps' is {}: must be above 0 and at most 1e6", suite.fps), file.string(),
                  object.place_of("fps"));

@@ -32,6 +32,8 @@ struct Suite {
   uint32_t frames = 0;                  // of a sequence from the scene's time 0, instead of `repeat`; 0: none
   double fps = 30;                      // frames a second of the scene's time
   uint32_t instrumented = 5;            // rounds with stamps, of each mode
+  double seconds = 0;                   // of a row's rounds, as RoundSettings::seconds; 0: no limit
+  uint32_t least = 5;                   // rounds whatever they take, with `seconds`
   uint32_t samples = 0;                 // of the reference; 0: hard shadows of the lights' centres
   uint64_t memory = uint64_t{1} << 30;  // bytes: RenderSettings::memory; not in the file
   bool images = false;                  // write PNGs of every row beside the results

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bench/error_interval.h"
 #include "bench/measure.h"
 #include "engine/error.h"
 #include "engine/metrics.h"
@@ -50,7 +51,14 @@ std::string Truth::error_json(const Image& visibility, const Image* color, const
   const EdgeSettings edges{&tracer_, camera_, map_size_of(vars)};
   MeasuredError error = measure_visibility(visibility, reference_, edges, deep_umbra_of(edges));
   if (color != nullptr) error.all.flip = flip(rgb_of(*color), shaded());
-  return to_json(error).dump();
+  nlohmann::json object = to_json(error);
+  std::vector<ComparedPlane> planes;
+  for (uint32_t i = 0; i < reference_.lights; ++i)
+    planes.push_back(
+        {visibility.plane(visibility_channel(i)), reference_.visibility[i], reference_.domain[i]});
+  object["ci95"] = error_intervals(planes, reference_.width, reference_.height);
+  if (reference_.noise_floor > 0) object["reference_noise"] = reference_.noise_floor;
+  return object.dump();
 }
 
 const Image& Truth::shaded() const {

@@ -4,6 +4,7 @@
 
 #include "engine/compile_parts.h"
 #include "engine/error.h"
+#include "engine/graph_shadowless.h"
 #include "engine/json_text.h"
 
 namespace gnomon {
@@ -18,6 +19,8 @@ class Compiler {
     resolved_ = resolve_graph(graph, setting, problems);
     if (problems.empty()) find_roots(problems);
     problems.raise();
+    keep_own_errors();
+    leave_technique_out(setting);
   }
 
   Plan run() {
@@ -33,13 +36,62 @@ class Compiler {
     add_barriers(plan_, uses, loops_);
     add_host_barriers(plan_, uses);
     tell_left_out();
+    plan_.facts = std::move(facts_);
     return std::move(plan_);
   }
 
  private:
+  // --- scenes without a visible shadow ---
+  // Where a pass darkens lit surfaces, a light without casters is one with shadows.
+  void keep_own_errors() {
+    const bool darkens = std::any_of(resolved_.nodes.begin(), resolved_.nodes.end(),
+                                     [](const ResolvedNode& node) { return node.declaration.darkens(); });
+    if (!darkens) return;
+    for (std::string& why : facts_.shadowless)
+      if (why == SceneFacts::no_caster) why.clear();
+  }
+
+  void leave_technique_out(const Declaration::Setting& setting) {
+    const std::string why = facts_.no_shadow();
+    if (options_.keep_all || why.empty()) return;
+    const std::optional<Graph> without = without_shadows(graph_);
+    if (!without) return;
+    Problems problems;
+    auto shadowless = std::make_unique<Graph>(*without);
+    ResolvedGraph resolved = resolve_graph(*shadowless, setting, problems);
+    const PortKey shown = outputs_.at("visibility");
+    const PortRef& instead = shadowless->outputs.at("visibility");
+    const bool fits =
+        problems.empty() &&
+        image_of(resolved_, shown) == image_of(resolved, {resolved.index.at(instead.node), instead.port});
+    if (!fits) return;  // the graph's visibility is something of its own
+    wanted_ = reachable();
+    resolved_ = std::move(resolved);
+    shadowless_ = std::move(shadowless);
+    why_shadowless_ = why;
+    outputs_.clear();
+    captures_.clear();
+    find_roots(problems);
+    problems.raise();
+  }
+
+  static ImageShape image_of(const ResolvedGraph& graph, const PortKey& key) {
+    return graph.nodes[key.node].declaration.find(key.port)->image;
+  }
+
+  // Ids of the nodes that outputs and captures need when nothing is left out.
+  std::set<std::string> reachable() const {
+    std::set<std::string> ids;
+    for (const uint32_t index : live_nodes(resolved_, Folding{}, roots()))
+      ids.insert(resolved_.nodes[index].node->id);
+    return ids;
+  }
+
+  const Graph& graph() const { return shadowless_ ? *shadowless_ : graph_; }
+
   // --- outputs and captures ---
   void find_roots(Problems& problems) {
-    for (const auto& [name, ref] : graph_.outputs) outputs_[name] = {resolved_.index.at(ref.node), ref.port};
+    for (const auto& [name, ref] : graph().outputs) outputs_[name] = {resolved_.index.at(ref.node), ref.port};
     for (const std::string& capture : options_.captures) find_capture(capture, problems);
   }
 
@@ -108,6 +160,7 @@ class Compiler {
     const ResolvedNode& node = resolved_.nodes[index];
     for (const Port& port : node.declaration.ports()) {
       if (port.direction != Direction::out && port.direction != Direction::transient) continue;
+      if (port.omittable && !options_.keep_all && !is_read({index, port.name})) continue;
       Resource resource;
       resource.name = node.node->id + "." + port.name;
       resource.is_buffer = port.is_buffer;
@@ -116,6 +169,18 @@ class Compiler {
       resource.kept = port.kept;
       add_resource({index, port.name}, std::move(resource));
     }
+  }
+
+  bool is_read(const PortKey& key) const {
+    for (const PortKey& root : roots())
+      if (root_of(resolved_, folding_, root) == key) return true;
+    for (const uint32_t reader : live_) {
+      const ResolvedNode& node = resolved_.nodes[reader];
+      for (const auto* inputs : {&node.in, &node.previous})
+        for (const auto& [port, source] : *inputs)
+          if (root_of(resolved_, folding_, source) == key) return true;
+    }
+    return false;
   }
 
   uint32_t add_resource(const PortKey& key, Resource resource) {
@@ -157,16 +222,30 @@ class Compiler {
     node.pass = resolved.pass;
     node.declaration = resolved.declaration;
     node.params = resolved.declaration.params();
-    for (const Port& port : resolved.declaration.ports()) connect(index, port, node);
+    for (const Port& port : resolved.declaration.ports()) {
+      connect(index, port, node);
+      if (port.direction == Direction::out && !port.is_buffer)
+        node.reach[port.name] = reach({index, port.name});
+    }
     position_[index] = uint32_t(plan_.nodes.size());
     plan_.nodes.push_back(std::move(node));
+  }
+
+  std::optional<uint32_t> reach(const PortKey& key) const {
+    if (options_.keep_all) return std::nullopt;
+    const std::vector<PortKey> all = roots();
+    const bool exported = std::any_of(all.begin(), all.end(), [&](const PortKey& root) {
+      return root_of(resolved_, folding_, root) == key;
+    });
+    return reach_of(resolved_, folding_, live_, key, exported);
   }
 
   void connect(uint32_t index, const Port& port, PlanNode& node) {
     const ResolvedNode& resolved = resolved_.nodes[index];
     std::optional<uint32_t> number;
     if (port.direction == Direction::out || port.direction == Direction::transient) {
-      number = resource_of_.at({index, port.name});
+      const auto own = resource_of_.find({index, port.name});
+      if (own != resource_of_.end()) number = own->second;  // else: an output that nobody reads
     } else if (const auto history = resolved.previous.find(port.name); history != resolved.previous.end()) {
       number = resource_of(history->second);
       node.previous_inputs[port.name] = true;
@@ -221,26 +300,30 @@ class Compiler {
 
   // --- what does not run ---
   void tell_left_out() {
-    const std::set<uint32_t> reachable = live_nodes(resolved_, Folding{}, roots());
+    const std::set<std::string> wanted = shadowless_ ? wanted_ : reachable();
     for (const uint32_t index : resolved_.order) {
       if (live_.contains(index)) continue;
       const GraphNode& node = *resolved_.nodes[index].node;
-      plan_.left_out.push_back({node.id, node.type, reason(index, reachable.contains(index))});
+      plan_.left_out.push_back({node.id, node.type, reason(index, wanted.contains(node.id))});
     }
   }
 
-  std::string reason(uint32_t index, bool reachable) const {
-    if (!reachable) return "no output or capture needs it";
+  std::string reason(uint32_t index, bool wanted) const {
+    if (!wanted) return "no output or capture needs it";
+    if (shadowless_) return why_shadowless_;
     const auto said = folding_.reasons.find(index);
     if (said != folding_.reasons.end()) return said->second;
     return "only passes that are left out read it";
   }
 
   const Graph& graph_;
-  const SceneFacts& facts_;
+  SceneFacts facts_;
   const CompileOptions& options_;
   const std::string file_;
   ResolvedGraph resolved_;
+  std::unique_ptr<Graph> shadowless_;  // what resolved_ is made of, where the camera sees no shadow
+  std::string why_shadowless_;
+  std::set<std::string> wanted_;  // then: what the graph as written needs
   Folding folding_;
   std::set<uint32_t> live_;
   std::map<std::string, PortKey> outputs_, captures_;

@@ -64,7 +64,8 @@ struct PlanNode {
   std::map<std::string, uint32_t> resources;    // port -> index into Plan::resources
   std::map<std::string, bool> constant_inputs;  // inputs that are folded constants
   std::map<std::string, bool> previous_inputs;  // inputs that read the copy of the frame before (history)
-  std::vector<Barrier> barriers;                // one batch, before the pass
+  std::map<std::string, std::optional<uint32_t>> reach;  // of outputs: Environment::reach
+  std::vector<Barrier> barriers;                         // one batch, before the pass
 };
 
 // [first, last) of Plan::nodes, submitted together; the host waits at its end when `host_wait`.
@@ -98,6 +99,7 @@ struct Plan {
   std::map<std::string, uint32_t> outputs;   // graph output -> resource
   std::map<std::string, uint32_t> captures;  // "node.port" -> resource
   std::vector<LeftOut> left_out;
+  SceneFacts facts;  // as passes may rely on them
   uint64_t heap_bytes = 0, heap_bytes_without_aliasing = 0;
 };
 
@@ -106,7 +108,7 @@ struct MemoryNeed {
 };
 struct CompileOptions {
   bool alias = true;
-  bool keep_all = false;              // do not ask need(); still culls what no output reaches
+  bool keep_all = false;              // leave nothing out but what no output reaches
   std::vector<std::string> captures;  // "node.port" kept and readable
   // Memory a resource takes on the device; the default counts texels (tests, `gnomon check`).
   std::function<MemoryNeed(const Resource&)> memory;

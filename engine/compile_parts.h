@@ -45,6 +45,12 @@ std::set<uint32_t> live_nodes(const ResolvedGraph& graph, const Folding& folding
 // The port that created the memory which `key` is a value of: the start of a chain of in-place modifications.
 PortKey root_of(const ResolvedGraph& graph, const Folding& folding, PortKey key);
 
+// --- what is read of a shadow map (compile_reach.cpp) ---
+// How far from receivers' places the texels of an output are read that count, over all of its live readers;
+// none: anywhere. `exported`: it is an output or a capture.
+std::optional<uint32_t> reach_of(const ResolvedGraph& graph, const Folding& folding,
+                                 const std::set<uint32_t>& live, const PortKey& key, bool exported);
+
 // --- uses (compile_epochs.cpp) ---
 // Uses that need no barrier between them: one write, or reads in one layout.
 struct Epoch {

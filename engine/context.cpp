@@ -45,11 +45,12 @@ VkImageView target_view(const GpuImage& image, const Targets& targets) {
 
 }  // namespace
 
-Environment::Environment(std::shared_ptr<Device> device, const GpuScene& scene,
+Environment::Environment(std::shared_ptr<Device> device, const GpuScene& scene, const SceneFacts& scene_facts,
                          const RenderSettings& settings, const PlanNode& node, const NodeState& state,
                          const std::vector<Physical>& resources, VkPipelineCache cache)
     : device_(std::move(device)),
       scene_(scene),
+      scene_facts_(scene_facts),
       settings_(settings),
       node_(node),
       state_(state),
@@ -62,8 +63,15 @@ ImageShape Environment::shape(const std::string& port) const {
 
 bool Environment::connected(const std::string& port) const { return node_.resources.contains(port); }
 
+std::optional<uint32_t> Environment::reach(const std::string& output) const {
+  const auto found = node_.reach.find(output);
+  if (found == node_.reach.end()) fail(fmt::format("pass '{}' has no output '{}'", node_.id, output));
+  return found->second;
+}
+
 Defines Environment::with_parameters(Defines defines) const {
   for (auto& d : parameter_defines(node_.params)) defines.push_back(std::move(d));
+  defines.emplace_back("KEEP_ALL", settings_.keep_all ? "1" : "0");
   return defines;
 }
 
@@ -262,21 +270,33 @@ void Context::bind_geometry() {
   vkCmdBindIndexBuffer(commands_, scene_.indices(), 0, VK_INDEX_TYPE_UINT32);
 }
 
-void Context::draw(const Draw& draw, uint32_t instances) {
+void Context::draw(const Draw& draw, const LayerRun& layers) {
   const uint32_t indices[] = {draw.instance, draw.material};
   vkCmdPushConstants(commands_, state_.pipeline_layout.get(), VK_SHADER_STAGE_ALL, 0, sizeof(indices),
                      indices);
-  vkCmdDrawIndexed(commands_, draw.index_count, instances, draw.first_index, draw.vertex_offset, 0);
+  vkCmdDrawIndexed(commands_, draw.index_count, layers.count, draw.first_index, draw.vertex_offset,
+                   layers.first);
 }
 
 void Context::draw_scene(const ScenePipelines& pipelines, Cull cull, uint32_t layers) {
+  const LayerRun all{0, layers};
+  draw_scene(pipelines, cull, [&](const Draw&) { return std::span(&all, 1); });
+}
+
+void Context::draw_scene(const ScenePipelines& pipelines, Cull cull, const InstanceLayers& layers) {
+  draw_scene(pipelines, cull, [&](const Draw& d) { return std::span(layers[d.instance]); });
+}
+
+void Context::draw_scene(const ScenePipelines& pipelines, Cull cull,
+                         const std::function<std::span<const LayerRun>(const Draw&)>& layers_of) {
   bind_geometry();
   for (const bool masked : {false, true}) {
     const Pipeline& pipeline = masked ? pipelines.masked : pipelines.opaque;
     bool bound = false;
     VkCullModeFlags current = VK_CULL_MODE_FLAG_BITS_MAX_ENUM;
     for (const Draw& d : scene_.draws()) {
-      if (d.alpha_masked != masked || !pipeline.handle) continue;
+      const std::span<const LayerRun> runs = layers_of(d);
+      if (d.alpha_masked != masked || !pipeline.handle || runs.empty()) continue;
       if (!bound) bind(pipeline), bound = true;
       const bool one_sided = cull != Cull::none && !d.double_sided;
       const bool back = (cull == Cull::material) != d.mirrored;  // a mirrored instance turns the winding over
@@ -287,7 +307,7 @@ void Context::draw_scene(const ScenePipelines& pipelines, Cull cull, uint32_t la
       const VkDescriptorSet material = scene_.material_set(d.material);
       vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 2, 1, &material, 0,
                               nullptr);
-      draw(d, layers);
+      for (const LayerRun& run : runs) draw(d, run);
     }
   }
 }

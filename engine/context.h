@@ -20,18 +20,21 @@ namespace gnomon {
 
 class Environment {
  public:
-  Environment(std::shared_ptr<Device> device, const GpuScene& scene, const RenderSettings& settings,
-              const PlanNode& node, const NodeState& state, const std::vector<Physical>& resources,
-              VkPipelineCache cache);
+  Environment(std::shared_ptr<Device> device, const GpuScene& scene, const SceneFacts& scene_facts,
+              const RenderSettings& settings, const PlanNode& node, const NodeState& state,
+              const std::vector<Physical>& resources, VkPipelineCache cache);
 
   const Scene& scene() const { return scene_.scene(); }
+  const SceneFacts& scene_facts() const { return scene_facts_; }  // with keep_all they promise nothing
   const GpuScene& gpu_scene() const { return scene_; }
   const RenderSettings& settings() const { return settings_; }
   const std::string& id() const { return node_.id; }
   const Params& params() const { return node_.params; }
   const Device& device() const { return *device_; }
   ImageShape shape(const std::string& port) const;
-  bool connected(const std::string& port) const;  // of an optional input
+  bool connected(const std::string& port) const;  // of an optional input, or an output that may be omitted
+  // How far from receivers' places the texels of an output that is a shadow map are read; none: anywhere.
+  std::optional<uint32_t> reach(const std::string& output) const;
 
   // Pipelines of this pass: its bindings, its parameter block and flags are in the preamble of every shader.
   Pipeline compute(const std::string& file, Defines defines = {}) const;
@@ -52,6 +55,12 @@ class Environment {
   // Memory that the host writes and shaders read; visible to every later submission.
   Buffer host_buffer(uint64_t bytes, VkBufferUsageFlags usage) const;
 
+  // Tells that a part of this pass does not run for this scene, and by which fact.
+  void left_out(std::string part, std::string reason) {
+    left_out_.push_back({node_.id, std::move(part), std::move(reason)});
+  }
+  const std::vector<LeftOutPass>& left_out() const { return left_out_; }
+
   void warn(std::string sentence) { warnings_.push_back(node_.id + ": " + std::move(sentence)); }
   const std::map<std::string, double>& facts() const { return facts_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -60,6 +69,7 @@ class Environment {
   Defines with_parameters(Defines defines) const;
   std::shared_ptr<Device> device_;
   const GpuScene& scene_;
+  const SceneFacts& scene_facts_;
   const RenderSettings& settings_;
   const PlanNode& node_;
   const NodeState& state_;
@@ -67,6 +77,7 @@ class Environment {
   VkPipelineCache cache_;
   std::map<std::string, double> facts_;
   std::vector<std::string> warnings_;
+  std::vector<LeftOutPass> left_out_;
 };
 
 struct ColorTarget {
@@ -95,6 +106,12 @@ enum class Cull {
 struct ScenePipelines {
   Pipeline opaque, masked;  // masked: alpha-masked materials
 };
+
+// Which layers each instance of the scene is drawn into.
+struct LayerRun {
+  uint32_t first, count;
+};
+using InstanceLayers = std::vector<std::vector<LayerRun>>;  // [instance]
 
 class Context {
  public:
@@ -141,8 +158,11 @@ class Context {
 
   // Raster. `body` records draws.
   void render(const Targets& targets, const std::function<void()>& body);
+  // Every instance of the scene `layers` times, gl_InstanceIndex counted from 0; or each one as often as it
+  // has layers, gl_InstanceIndex the layer's.
   void draw_scene(const ScenePipelines& pipelines, Cull cull, uint32_t layers = 1);
-  void draw(const Draw& draw, uint32_t instances = 1);  // after bind() and bind_geometry()
+  void draw_scene(const ScenePipelines& pipelines, Cull cull, const InstanceLayers& layers);
+  void draw(const Draw& draw, const LayerRun& layers = {0, 1});  // after bind() and bind_geometry()
   void bind_geometry();
   void set_cull(VkCullModeFlags mode);
   void set_area(Extent extent);  // viewport and scissor: the target's upper left part, in pixels
@@ -156,6 +176,8 @@ class Context {
 
  private:
   const Physical& physical(const std::string& port) const;
+  void draw_scene(const ScenePipelines& pipelines, Cull cull,
+                  const std::function<std::span<const LayerRun>(const Draw&)>& layers_of);
   void copy_region(const Buffer& from, const std::string& image_port, const Rows& rows, uint32_t layers);
   VkCommandBuffer commands_;
   const GpuScene& scene_;

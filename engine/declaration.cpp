@@ -212,6 +212,16 @@ void Declaration::keep(std::string_view name) {
     if (port.name == name) port.kept = true;
 }
 
+void Declaration::omit_unread(std::string_view name) {
+  for (Port& port : ports_)
+    if (port.name == name) port.omittable = true;
+}
+
+void Declaration::reads_around(std::string_view input, uint32_t texels, std::string_view through) {
+  for (Port& port : ports_)
+    if (port.name == input) port.reach = texels, port.reach_through = through;
+}
+
 BufferShape Declaration::input_buffer(std::string name, Access access, std::string help) {
   check_new(ports_, name, "port");
   Port port = make_port(std::move(name), Direction::in, access, true, false, std::move(help));

@@ -23,6 +23,8 @@ std::string wrong_access(const Port& port) {
     return "is a buffer with an image's access";
   if (!port.is_buffer && has(port.access, Access::vertex | Access::indirect))
     return "is an image with a buffer's access";
+  if (port.omittable && (port.direction != Direction::out || !attachment))
+    return "can be omitted, which only attachments can";
   if (reads_host_only(port.access) && port.direction != Direction::in) return "is written by nobody";
   return {};
 }

@@ -70,7 +70,12 @@ struct Port {
   bool array = false;     // GLSL sees a 2D array (layers); otherwise a plain 2D image
   bool optional = false;  // an input that may be left unconnected
   bool kept = false;  // an output or transient that keeps its content from turn to turn and frame to frame
-  ImageShape image;   // of an input: that of the connected output
+  bool omittable = false;  // an output that is not there when nobody reads it
+  // Of an input that is a shadow map, or made of one: how far from a receiver's place in it texels are read
+  // that count. Absent: anywhere.
+  std::optional<uint32_t> reach;
+  std::string reach_through;  // then the output that those texels are read for; empty: the map ends here
+  ImageShape image;           // of an input: that of the connected output
   BufferShape buffer;
   std::string help;
 };
@@ -153,6 +158,16 @@ class Declaration {
   // the first write.
   void keep(std::string_view name);
 
+  // Of an output: it need not be there when nobody reads it (Environment::connected).
+  void omit_unread(std::string_view name);
+  // Of an input that is a shadow map, or made of one: what is further than `texels` from a receiver's place
+  // in it cannot change what this pass makes. `through`: of a pass that makes another map of it, that output.
+  // Casters that only unread texels show need not be drawn (Environment::reach).
+  void reads_around(std::string_view input, uint32_t texels, std::string_view through = {});
+
+  // This pass darkens surfaces that no caster shades: with its own errors it stays even then.
+  void darkens_lit_surfaces() { darkens_ = true; }
+
   // Buffer ports.
   BufferShape input_buffer(std::string name, Access access, std::string help);
   std::optional<BufferShape> optional_input_buffer(std::string name, Access access, std::string help);
@@ -161,6 +176,7 @@ class Declaration {
   void transient_buffer(std::string name, Access access, BufferShape shape, std::string help);
 
   PassKind kind() const { return kind_; }
+  bool darkens() const { return darkens_; }
   const std::string& summary() const { return summary_; }
   const std::string& cite() const { return cite_; }
   const std::vector<Port>& ports() const { return ports_; }
@@ -177,6 +193,7 @@ class Declaration {
   Values given_, resolved_;
   Inputs inputs_;
   PassKind kind_ = PassKind::compute;
+  bool darkens_ = false;
   std::string summary_, cite_;
   std::vector<Port> ports_;
   std::vector<ParamSpec> specs_;

@@ -67,6 +67,7 @@ struct Renderer::Impl {
   std::unique_ptr<Timestamps> stamps;
   std::map<std::string, double> facts;
   std::vector<std::string> warnings;
+  std::vector<LeftOutPass> left_out_parts;
   uint32_t frame = 0;
   double seconds = 0, next_seconds = 0;  // the scene's time of the last frame, and of the next
   bool playing = false;                  // time runs from frame to frame
@@ -90,7 +91,8 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
   options.captures = settings.captures;
   options.memory = [this](const Resource& resource) { return device_need(device, resource); };
   const double aspect = camera.aspect.value_or(double(settings.width) / settings.height);
-  plan = compile(graph, setting, scene_facts(*scene, camera, aspect), options);
+  const SceneFacts facts_of_view = scene_facts(*scene, camera, aspect, settings.height);
+  plan = compile(graph, setting, settings.keep_all ? promising_nothing(facts_of_view) : facts_of_view, options);
   gpu_scene.update(view(), 0, 0);
 
   VkPipelineCacheCreateInfo cache_info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
@@ -113,11 +115,12 @@ Renderer::Impl::~Impl() { vkDeviceWaitIdle(device->handle()); }
 
 void Renderer::Impl::prepare() {
   for (uint32_t i = 0; i < plan.nodes.size(); ++i) {
-    Environment environment(device, gpu_scene, settings, plan.nodes[i], on_device->node(i),
+    Environment environment(device, gpu_scene, plan.facts, settings, plan.nodes[i], on_device->node(i),
                             on_device->resources(), cache.get());
     plan.nodes[i].pass->prepare(environment);
     facts.insert(environment.facts().begin(), environment.facts().end());
     warnings.insert(warnings.end(), environment.warnings().begin(), environment.warnings().end());
+    left_out_parts.insert(left_out_parts.end(), environment.left_out().begin(), environment.left_out().end());
   }
 }
 
@@ -300,7 +303,8 @@ MemoryUse Renderer::memory() const {
 }
 std::vector<LeftOutPass> Renderer::left_out() const {
   std::vector<LeftOutPass> result;
-  for (const LeftOut& l : impl_->plan.left_out) result.push_back({l.id, l.reason});
+  for (const LeftOut& l : impl_->plan.left_out) result.push_back({l.id, {}, l.reason});
+  result.insert(result.end(), impl_->left_out_parts.begin(), impl_->left_out_parts.end());
   return result;
 }
 std::vector<std::string> Renderer::warnings() const { return impl_->warnings; }

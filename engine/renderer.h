@@ -53,7 +53,9 @@ struct MemoryUse {
   uint64_t peak_bytes = 0, transient_bytes = 0, transient_bytes_without_aliasing = 0;
 };
 struct LeftOutPass {
-  std::string pass, reason;
+  std::string pass;
+  std::string part;  // of a pass that runs; empty: all of it
+  std::string reason;
 };
 
 class Renderer {
@@ -80,7 +82,7 @@ class Renderer {
   std::vector<uint32_t> read_words(const std::string& output);
 
   MemoryUse memory() const;
-  std::vector<LeftOutPass> left_out() const;
+  std::vector<LeftOutPass> left_out() const;    // passes, then parts of those that run
   std::vector<std::string> warnings() const;    // passes' own ("open mesh 'leaves' in shadow_volumes")
   std::map<std::string, double> facts() const;  // passes' own figures: "shade.bias_world", ...
   std::string plan_text() const;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/area_light.h"
+#include "engine/caster_culling.h"
 #include "engine/mesh_clean.h"
 #include "engine/scene.h"
 
@@ -11,21 +12,17 @@ namespace {
 
 using Corners = std::array<glm::dvec3, 8>;
 
+struct View {
+  glm::dvec3 eye;
+  std::vector<bool> visible;  // per body
+  ViewVolume volume;
+};
+
 struct Body {       // an instance, by its bounds
   Corners corners;  // world, relative to the scene's centre
   bool planar = false;
   glm::dvec3 point{0.0}, normal{0.0};  // of a planar one's plane
 };
-
-Corners corners_of(const Bounds& box, const glm::dmat4& transform) {
-  Corners corners;
-  for (int i = 0; i < 8; ++i) {
-    const glm::dvec3 corner((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
-                            (i & 4) != 0 ? box.max.z : box.min.z);
-    corners[static_cast<size_t>(i)] = glm::dvec3(transform * glm::dvec4(corner, 1.0));
-  }
-  return corners;
-}
 
 Bounds bounds_of(const Corners& corners, const glm::dmat3& axes) {
   Bounds box;
@@ -55,6 +52,9 @@ bool outside_pyramid(const Corners& corners, const glm::dmat4& view_from_world, 
 // The light as points whose convex hull holds it: its centre, or points around its area.
 struct Source {
   bool directional = false;
+  glm::dvec3 centre{0.0};  // relative to the scene's centre
+  double radius = 0;       // of the area around it
+  std::optional<double> range;
   glm::dmat4 light_from_world{1.0};  // relative to the scene's centre
   std::vector<glm::dvec3> points;
   double half_tangent = 0;  // of a spot's square frustum; 0: all directions
@@ -66,11 +66,15 @@ Source source_of(const Light& light, const glm::dvec3& origin) {
   glm::dmat4 placed = light.world_from_light;
   placed[3] -= glm::dvec4(origin, 0.0);
   source.light_from_world = glm::inverse(placed);
+  source.centre = glm::dvec3(placed[3]);
+  if (light.type != LightType::directional) source.range = light.range;
   if (!shines_as_area(light))
     source.points.emplace_back(placed[3]);
   else
     for (const glm::dvec3& p : enclosing_points(*light.area))
       source.points.emplace_back(placed * glm::dvec4(p, 1.0));
+  for (const glm::dvec3& p : source.points)
+    source.radius = std::max(source.radius, glm::distance(p, source.centre));
   if (light.type == LightType::spot) source.half_tangent = std::tan(0.5 * light.map_fov);
   return source;
 }
@@ -114,6 +118,23 @@ bool may_shadow(const Body& caster, const Body& receiver, const Source& source, 
   return true;
 }
 
+// A penumbra is at most as wide as the light, times the way from the nearest caster to the farthest receiver,
+// over that from the light to the caster. World units.
+double widest_penumbra(const std::vector<Body>& bodies, const View& view, const Source& source) {
+  double nearest = 1e300, farthest = 0;
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    Bounds box;
+    for (const glm::dvec3& p : bodies[i].corners) {
+      box.add(p);
+      if (view.visible[i]) farthest = std::max(farthest, glm::distance(p, source.centre));
+    }
+    nearest = std::min(nearest, glm::distance(glm::clamp(source.centre, box.min, box.max), source.centre));
+  }
+  const double gap = nearest - source.radius;
+  if (source.radius == 0 || farthest <= nearest) return 0;
+  return gap > 0 ? 2 * source.radius * (farthest - nearest) / gap : 1e300;
+}
+
 std::vector<Body> bodies_of(const Scene& scene, const glm::dvec3& origin) {
   struct Flat {
     bool known = false, planar = false;
@@ -127,8 +148,10 @@ std::vector<Body> bodies_of(const Scene& scene, const glm::dvec3& origin) {
     if (!flat.known) flat.planar = is_planar(mesh, flat.point, flat.normal), flat.known = true;
     glm::dmat4 placed = instance.world_from_object;
     placed[3] -= glm::dvec4(origin, 0.0);
-    Body body{
-        corners_of(mesh.bounds, placed), flat.planar, glm::dvec3(placed * glm::dvec4(flat.point, 1.0)), {}};
+    Body body{box_corners(scene, instance, origin),
+              flat.planar,
+              glm::dvec3(placed * glm::dvec4(flat.point, 1.0)),
+              {}};
     if (flat.planar)
       body.normal = glm::normalize(glm::inverse(glm::transpose(glm::dmat3(placed))) * flat.normal);
     bodies.push_back(body);
@@ -136,24 +159,65 @@ std::vector<Body> bodies_of(const Scene& scene, const glm::dvec3& origin) {
   return bodies;
 }
 
-bool casts_visible_shadow(const std::vector<Body>& bodies, const std::vector<bool>& visible,
-                          const Source& source, double tolerance) {
-  for (size_t r = 0; r < bodies.size(); ++r) {
-    if (!visible[r]) continue;
-    if (source.half_tangent > 0 && outside_pyramid(bodies[r].corners, source.light_from_world,
-                                                   source.half_tangent, source.half_tangent, 0.0))
-      continue;
-    for (size_t c = 0; c < bodies.size(); ++c) {
+// The camera sees only the side of a planar receiver that faces away from the light's centre.
+bool faces_away(const Body& receiver, const Source& source, const glm::dvec3& eye) {
+  if (!receiver.planar) return false;
+  constexpr double kGrazing = 1e-3;  // sine of the angle below which planar meshes' triangles may differ
+  const double seen = glm::dot(eye - receiver.point, receiver.normal);
+  const glm::dvec3 to_light = source.directional ? glm::dvec3(glm::transpose(source.light_from_world)[2])
+                                                 : source.centre - receiver.point;
+  const double side = glm::dot(to_light, receiver.normal) * (seen < 0 ? -1.0 : 1.0);
+  return side < -kGrazing * glm::length(to_light);
+}
+
+// Nothing of the bounds is within the light's range.
+bool out_of_range(const Body& receiver, const Source& source) {
+  if (!source.range) return false;
+  Bounds box;
+  for (const glm::dvec3& p : receiver.corners) box.add(p);
+  return glm::distance(glm::clamp(source.centre, box.min, box.max), source.centre) > *source.range;
+}
+
+// Why the camera sees no shadow of a light; empty: it may see one.
+std::string shadowless_reason(const std::vector<Body>& bodies, const View& view, const Source& source,
+                              double tolerance) {
+  std::vector<size_t> seen, receivers;
+  for (size_t r = 0; r < bodies.size(); ++r)
+    if (view.visible[r]) seen.push_back(r);
+  if (seen.empty()) return "the camera sees nothing";
+  const auto keep = [&](auto&& leaves_out) {
+    receivers.clear();
+    std::copy_if(seen.begin(), seen.end(), std::back_inserter(receivers),
+                 [&](size_t r) { return !leaves_out(bodies[r]); });
+    seen = receivers;
+    return seen.empty();
+  };
+  if (keep([&](const Body& r) { return out_of_range(r, source); }))
+    return "nothing that the camera sees is within the light's range";
+  if (source.half_tangent > 0 && keep([&](const Body& r) {
+        return outside_pyramid(r.corners, source.light_from_world, source.half_tangent, source.half_tangent,
+                               0.0);
+      }))
+    return "nothing that the camera sees is in the light's frustum";
+  if (keep([&](const Body& r) { return faces_away(r, source, view.eye); }))
+    return "everything that the camera sees faces away from the light";
+  const glm::dvec4 light = source.directional
+                               ? glm::dvec4(glm::dvec3(glm::transpose(source.light_from_world)[2]), 0.0)
+                               : glm::dvec4(source.centre, 1.0);
+  const LightVolume between(view.volume, light, source.radius + tolerance);
+  for (size_t c = 0; c < bodies.size(); ++c) {
+    if (!between.meets(bodies[c].corners)) continue;
+    for (const size_t r : seen) {
       if (c == r && bodies[c].planar) continue;  // a plane cannot shadow itself
-      if (c == r || may_shadow(bodies[c], bodies[r], source, tolerance)) return true;
+      if (c == r || may_shadow(bodies[c], bodies[r], source, tolerance)) return {};
     }
   }
-  return false;
+  return SceneFacts::no_caster;
 }
 
 }  // namespace
 
-SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect) {
+SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect, uint32_t height) {
   SceneFacts facts;
   facts.triangles = scene.triangles();
   facts.lights = static_cast<uint32_t>(scene.lights.size());
@@ -172,17 +236,43 @@ SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect) 
   placed[3] -= glm::dvec4(origin, 0.0);
   const glm::dmat4 view = glm::inverse(placed);
   const double half_height = std::tan(0.5 * camera.fov_y);
-  std::vector<bool> visible;
+  View seen{glm::dvec3(placed[3]), {}, ViewVolume(scene, camera, aspect, origin)};
   for (const Body& body : bodies)
-    visible.push_back(!outside_pyramid(body.corners, view, half_height * aspect, half_height, camera.near));
+    seen.visible.push_back(
+        !outside_pyramid(body.corners, view, half_height * aspect, half_height, camera.near));
+  facts.middle_depth = std::max(glm::length(seen.eye), 1e-30);
+  const bool still = !facts.casters_move && !camera.moving;
+  facts.nearest_depth = still ? std::max(seen.volume.nearest(), camera.near) : camera.near;
+  if (height > 0) facts.smallest_pixel = 2 * half_height / height * facts.nearest_depth;
   for (const Light& light : scene.lights) {
-    const bool moving = facts.casters_move || light.moving || camera.moving;  // somewhere on the way it may
     facts.light_moves.push_back(light.moving);
-    facts.casts_visible_shadow.push_back(
-        moving ||
-        casts_visible_shadow(bodies, visible, source_of(light, origin), 1e-6 * scene.bounds.radius()));
+    const bool may = !still || light.moving;  // somewhere on the way
+    facts.shadowless.push_back(
+        may ? std::string()
+            : shadowless_reason(bodies, seen, source_of(light, origin), 1e-6 * scene.bounds.radius()));
+    const double widest = may ? 1e300 : widest_penumbra(bodies, seen, source_of(light, origin));
+    facts.penumbra.push_back(widest == 0 ? 0.0 : widest / std::max(facts.smallest_pixel, 1e-300));
     facts.light_size.push_back(shines_as_area(light) ? std::max(light.area->width, light.area->height) : 0.0);
   }
+  return facts;
+}
+
+std::string SceneFacts::no_shadow() const {
+  std::string reason;
+  for (const std::string& why : shadowless) {
+    if (why.empty()) return {};
+    if (reason.find(why) == std::string::npos) reason += (reason.empty() ? "" : "; ") + why;
+  }
+  return reason;
+}
+
+SceneFacts promising_nothing(SceneFacts facts) {
+  facts.has_alpha_mask = facts.has_double_sided = facts.has_open_meshes = true;
+  facts.animated = facts.casters_move = true;
+  facts.nearest_depth = facts.smallest_pixel = 0;
+  facts.penumbra.assign(facts.penumbra.size(), 1e300);
+  facts.shadowless.assign(facts.shadowless.size(), {});
+  facts.light_moves.assign(facts.light_moves.size(), true);
   return facts;
 }
 

@@ -31,6 +31,7 @@ struct LightState {
   std::optional<LightQuads> tree;  // none: the light is a point
   uint32_t rendered = 0;           // samples whose maps have been rendered
   bool needed = true;              // some caster's shadow can be in view
+  bool area = false;               // wide enough for penumbrae
   bool full = false;               // a quad stayed whole because memory for samples ran out
 };
 
@@ -151,9 +152,14 @@ class AreaRefine : public Pass {
     const auto& faces = e.gpu_scene().faces();
     for (uint32_t i = 0; i < faces.size(); ++i) lights_[faces[i].light].faces.push_back(i);
     slots_ = e.shape("values").layers;
-    const std::vector<bool> needed = casts_shadow_in_view(e);
+    const SceneFacts& facts = e.scene_facts();
     uint32_t areas = 0;
-    for (const Light& light : scene.lights) areas += shines_as_area(light) ? 1 : 0;
+    for (uint32_t i = 0; i < lights_.size(); ++i) {
+      lights_[i].needed = facts.shadowless[i].empty();
+      lights_[i].area = shines_as_area(scene.lights[i]) && !facts.shines_as_point(i);
+      areas += lights_[i].area ? 1 : 0;
+    }
+    tell_left_out(e);
     const uint32_t points = uint32_t(scene.lights.size()) - areas, words = slots_ / kWordSamples;
     if (words < points + areas)
       fail(fmt::format("{} lights at this size need more memory than the limit", scene.lights.size()), {},
@@ -162,10 +168,8 @@ class AreaRefine : public Pass {
     const uint32_t most = most_samples(e.params().integer("levels"));
     uint32_t first = 0;
     for (uint32_t i = 0; i < lights_.size(); ++i) {
-      const bool area = shines_as_area(scene.lights[i]);
-      lights_[i].needed = needed[i];
       lights_[i].first = first;
-      lights_[i].capacity = area ? std::min(share * kWordSamples, most) : 1;
+      lights_[i].capacity = lights_[i].area ? std::min(share * kWordSamples, most) : 1;
       first += divide_up(lights_[i].capacity, kWordSamples) * kWordSamples;
     }
   }
@@ -182,7 +186,7 @@ class AreaRefine : public Pass {
       light.rendered = 0;
       light.full = false;
       light.tree.reset();
-      if (light.needed && shines_as_area(scene.lights[i]))
+      if (light.needed && light.area)
         light.tree.emplace(uint32_t(c.params().integer("levels")), order_, light_surface(scene, i));
       if (light.tree && light.tree->samples().empty())
         light.tree.reset();  // no point of the grid is on it: its centre

@@ -65,13 +65,17 @@ class AreaUniform : public Pass {
 
  private:
   // Once: a light may move, but keeps its shape.
-  void choose_points(const Environment& e) {
-    const std::vector<bool> needed = casts_shadow_in_view(e);
+  void choose_points(Environment& e) {
+    const SceneFacts& facts = e.scene_facts();
     const auto n = uint32_t(e.params().integer("samples"));
     const std::string& pattern = e.params().choice("pattern");
-    points_.resize(needed.size());
-    for (uint32_t light = 0; light < needed.size(); ++light)
-      if (needed[light]) points_[light] = light_points(e.scene(), light, n, pattern);
+    points_.resize(facts.lights);
+    for (uint32_t light = 0; light < points_.size(); ++light) {
+      if (!facts.shadowless[light].empty()) continue;
+      points_[light] = facts.shines_as_point(light) ? std::vector<LightPoint>{{glm::dvec2(0.0), 1.0}}
+                                                    : light_points(e.scene(), light, n, pattern);
+    }
+    tell_left_out(e);
   }
 
   bool keeps_maps(const Context& c, uint32_t light) const {

@@ -18,6 +18,7 @@ class GBuffer : public Pass {
     d.output("geometric", Access::color, false, {size, 1, 1, VK_FORMAT_R16G16_SNORM},
              "octahedral normal of the triangle, turned to the camera on double-sided meshes");
     d.output("albedo", Access::color, false, {size, 1, 1, VK_FORMAT_R8G8B8A8_SRGB}, "base colour");
+    for (const Channel& channel : kChannels) d.omit_unread(channel.port);
   }
 
   void prepare(Environment& e) override {
@@ -25,25 +26,44 @@ class GBuffer : public Pass {
     state.vertex = "scene.vert.glsl";
     state.fragment = "gbuffer.glsl";
     state.layout = VertexLayout::full;
-    state.colors = {VK_FORMAT_R16G16_SNORM, VK_FORMAT_R16G16_SNORM, VK_FORMAT_R8G8B8A8_SRGB};
+    add_channels(e, state);
     state.depth = VK_FORMAT_D32_SFLOAT;
     state.depth_test = state.depth_write = true;
     state.depth_compare = e.settings().reversed_z ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
     far_ = e.settings().reversed_z ? 0.0f : 1.0f;
     pipelines_.opaque = e.raster(state);
-    state.defines = {{"MASKED", "1"}};
+    state.defines.emplace_back("MASKED", "1");
     pipelines_.masked = e.raster(state);
   }
 
   void record(Context& c) override {
-    constexpr std::array<float, 4> kNothing{};
-    c.render({{{"normal", kNothing}, {"geometric", kNothing}, {"albedo", kNothing}},
-              DepthTarget{"depth", far_},
-              {}},
-             [&] { c.draw_scene(pipelines_, Cull::material); });
+    c.render({channels_, DepthTarget{"depth", far_}, {}}, [&] { c.draw_scene(pipelines_, Cull::material); });
   }
 
  private:
+  struct Channel {
+    const char *port, *define;
+    VkFormat format;
+  };
+  static constexpr std::array<Channel, 3> kChannels = {{{"normal", "NORMAL", VK_FORMAT_R16G16_SNORM},
+                                                        {"geometric", "GEOMETRIC", VK_FORMAT_R16G16_SNORM},
+                                                        {"albedo", "ALBEDO", VK_FORMAT_R8G8B8A8_SRGB}}};
+
+  // Those that somebody reads, with their places among the colour attachments.
+  void add_channels(Environment& e, RasterState& state) {
+    constexpr std::array<float, 4> kNothing{};
+    for (const Channel& channel : kChannels) {
+      if (!e.connected(channel.port)) {
+        e.left_out(std::string("channel ") + channel.port, "nobody reads it");
+        continue;
+      }
+      state.defines.emplace_back(channel.define, std::to_string(channels_.size()));
+      state.colors.push_back(channel.format);
+      channels_.push_back({channel.port, kNothing});
+    }
+  }
+
+  std::vector<ColorTarget> channels_;
   ScenePipelines pipelines_;
   float far_ = 0;
 };

@@ -1,5 +1,6 @@
 #include "engine/context.h"
 #include "passes/moment_basis.h"
+#include "passes/map_domain.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {
@@ -14,8 +15,12 @@ class MomentTest : public Pass {
         "Annen et al. 2008, eq. 4; Lauritzen and McCool "
         "2008; Gumbau et al. 2011 and 2013; Peters and Klein 2015, "
         "algorithm 3; Peters et al. 2017");
+    d.darkens_lit_surfaces();  // on slopes and next to anything that the kernel takes in
     const ImageShape visibility = declare_receiver(d);
-    d.input("moments", Access::sampled, true, "the filtered basis; a face's layers follow each other");
+    const ImageShape moments =
+        d.input("moments", Access::sampled, true, "the filtered basis; a face's layers follow each other");
+    d.reads_around("shadow_map", 1);
+    if (moments.mips == 1) d.reads_around("moments", 2);
     declare_basis(d);
     declare_kernel(d);
     d.choice("bound", "chebyshev", {"chebyshev", "gaussian", "gaussian_cdf"},
@@ -34,6 +39,7 @@ class MomentTest : public Pass {
     if (moments.mips > 1) defines.emplace_back("MIP_MAPS", "1");
     test_.prepare(e, "moment_test.glsl", defines);
     report_bias(e);
+    warn_about_kernel(e, e.shape("shadow_map").extent.width);
   }
 
   void record(Context& c) override { test_.dispatch_all(c); }

@@ -1,4 +1,5 @@
 #include "engine/context.h"
+#include "passes/map_domain.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {
@@ -10,7 +11,8 @@ class PercentageCloserFilter : public Pass {
     d.summary("Averages the shadow tests around every camera pixel's place in the shadow map.");
     d.cite("Reeves, Salesin and Cook 1987; Macedo 2018, ch. 2.4");
     const ImageShape visibility = declare_receiver(d);
-    declare_kernel(d);
+    const int64_t kernel = declare_kernel(d);
+    d.reads_around("shadow_map", uint32_t(kernel / 2 + 2));
     d.choice(
         "sampling", "box", {"box", "smooth_box", "vogel"},
         "box of whole texels; box about the receiver's exact place, whose border texels weigh in part; or "
@@ -22,6 +24,7 @@ class PercentageCloserFilter : public Pass {
   void prepare(Environment& e) override {
     filter_.prepare(e, "pcf.glsl");
     report_bias(e);
+    warn_about_kernel(e, e.shape("shadow_map").extent.width);
   }
   void record(Context& c) override { filter_.dispatch_all(c); }
 

@@ -33,6 +33,7 @@ class PlanarShadows : public Pass {
 
   void prepare(Environment& e) override {
     camera_ = e.settings().camera;
+    shadowless_ = e.scene_facts().shadowless;
     planes_ = receiver_planes(e.scene(), size_t(e.params().integer("planes")));
     for (size_t i = 0; i < planes_.size(); ++i) e.fact(fmt::format("plane{}.area", i), planes_[i].area);
     e.warn(fmt::format("only the {} largest plane(s) receive shadows", planes_.size()));
@@ -59,7 +60,8 @@ class PlanarShadows : public Pass {
       c.render({{{"visibility", kLit}}, {}, light}, [&] {
         c.push(begin_, Push{0, 0, light, 0, {}});
         c.draw_fullscreen(begin_);
-        for (const ReceiverPlane& plane : planes_) draw_casters(c, scene, plane, light);
+        if (shadowless_[light].empty())
+          for (const ReceiverPlane& plane : planes_) draw_casters(c, scene, plane, light);
       });
     }
   }
@@ -86,6 +88,7 @@ class PlanarShadows : public Pass {
   ScenePipelines casters_;
   Pipeline begin_;
   std::vector<ReceiverPlane> planes_;
+  std::vector<std::string> shadowless_;  // SceneFacts
   uint32_t camera_ = 0;
 };
 

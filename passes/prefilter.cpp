@@ -24,7 +24,7 @@ class Prefilter : public Pass {
         "van Herk 1992 (the running sums, of additions only); Lauritzen and "
         "McCool 2008 (log space)");
     ImageShape shape = d.input("source", Access::sampled, true, "what is filtered, every layer by itself");
-    declare_kernel(d);
+    const int64_t kernel = declare_kernel(d);
     d.choice("shape", "box", {"box", "gaussian"},
              "weights: equal, or Gaussian with a standard deviation of a "
              "quarter of the kernel's width");
@@ -39,6 +39,7 @@ class Prefilter : public Pass {
       access = access | Access::transfer_read | Access::transfer_write;
     }
     d.output("result", access, true, shape, "filtered by rows and columns");
+    if (!mips) d.reads_around("source", uint32_t(kernel / 2), "result");  // mip levels hold all of the map
   }
 
   Need need(const SceneFacts&, const Params& params) const override {

@@ -71,6 +71,20 @@ const Pipeline& LightPipelines::of(const Context& c, uint32_t light) const {
   return c.scene().scene().lights[light].type == LightType::point ? six_faces_ : one_face_;
 }
 
+void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines) {
+  pipelines_.prepare(e, file, defines);
+  for (const std::string& why : e.scene_facts().shadowless) shadowless_.push_back(!why.empty());
+  if (std::find(shadowless_.begin(), shadowless_.end(), true) != shadowless_.end())
+    unshadowed_ = e.compute("unshadowed.glsl");
+}
+
+bool PerLight::shade_shadowless(Context& c, uint32_t light) const {
+  if (!shadowless_[light]) return false;
+  c.push(unshadowed_, light);
+  c.dispatch_over(unshadowed_, c.shape("visibility").extent);
+  return true;
+}
+
 const Pipeline& PerLight::ready(Context& c, uint32_t light, std::array<uint32_t, 2> part) const {
   const auto& faces = c.scene().faces();
   uint32_t first = 0;
@@ -86,7 +100,8 @@ void PerLight::dispatch_over(Context& c, uint32_t light, Extent pixels) const {
 
 void PerLight::dispatch_all(Context& c) const {
   const ImageShape shape = c.shape("visibility");
-  for (uint32_t light = 0; light < shape.layers; ++light) dispatch_over(c, light, shape.extent);
+  for (uint32_t light = 0; light < shape.layers; ++light)
+    if (!shade_shadowless(c, light)) dispatch_over(c, light, shape.extent);
 }
 
 void PerLight::dispatch_indirect(Context& c, uint32_t light, const std::string& port,

@@ -34,9 +34,10 @@ class LightPipelines {
 // A compute shader that includes shadow_query.glsl, run for one light at a time.
 class PerLight {
  public:
-  void prepare(Environment& e, const std::string& file, const Defines& defines = {}) {
-    pipelines_.prepare(e, file, defines);
-  }
+  void prepare(Environment& e, const std::string& file, const Defines& defines = {});
+  // Lights whose shadows the camera cannot see (SceneFacts): writes `visibility` without the shader. Then
+  // true.
+  bool shade_shadowless(Context& c, uint32_t light) const;
   void dispatch_over(Context& c, uint32_t light, Extent pixels) const;
   // One invocation per pixel of `visibility`, light by light.
   void dispatch_all(Context& c) const;
@@ -48,6 +49,8 @@ class PerLight {
   const Pipeline& ready(Context& c, uint32_t light,
                         std::array<uint32_t, 2> part = {}) const;  // push constants too
   LightPipelines pipelines_;
+  std::vector<bool> shadowless_;  // per light
+  Pipeline unshadowed_;           // only when some light is
 };
 
 // Puts the biases' size in world units into run.json, at the middle of each map face's depth range.

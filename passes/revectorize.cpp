@@ -17,7 +17,9 @@ class Revectorize : public Pass {
     d.choice(
         "walk", "tangent_plane", {"tangent_plane", "kept_lowering"},
         "depth along the walk: the receiver's tangent plane at each texel, or the remedy of section 3.1.3");
-    d.integer("max_size", 16, 1, 1024, "texels", "longest walk along a silhouette, in each direction");
+    const int64_t walk =
+        d.integer("max_size", 16, 1, 1024, "texels", "longest walk along a silhouette, in each direction");
+    d.reads_around("shadow_map", uint32_t(walk + 2));
     d.number("epsilon", 1e-3, 0, 1, "depth range",
              "kept_lowering: how near the map is lowered for, and by how much");
     d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
@@ -33,6 +35,7 @@ class Revectorize : public Pass {
   void record(Context& c) override {
     const ImageShape shape = c.shape("visibility");
     for (uint32_t light = 0; light < shape.layers; ++light) {
+      if (find_.shade_shadowless(c, light)) continue;
       if (light > 0) c.own_barrier();  // the list is used again
       clear_pixel_list(c);
       c.own_barrier();

@@ -3,6 +3,7 @@
 #include "engine/context.h"
 #include "passes/divide_up.h"
 #include "passes/pixel_list.h"
+#include "passes/map_domain.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {
@@ -14,8 +15,10 @@ class RevectorizationBasedFilter : public Pass {
     d.summary("Averages the revectorized shadow around every camera pixel's place in the shadow map.");
     d.cite("Macedo 2018, algorithm 2, eq. 4.1-4.2");
     const ImageShape visibility = declare_receiver(d);
-    declare_kernel(d);
-    d.integer("max_size", 16, 1, 255, "texels", "longest walk along a silhouette, in each direction");
+    const int64_t kernel = declare_kernel(d);
+    const int64_t walk =
+        d.integer("max_size", 16, 1, 255, "texels", "longest walk along a silhouette, in each direction");
+    d.reads_around("shadow_map", uint32_t(kernel / 2 + walk + 3));
     d.flag("reuse", true, "samples share their neighbours' silhouette walks; the result is the same");
     d.flag("list", true,
            "only pixels whose kernel touches a silhouette are filtered; the result is the same");
@@ -28,11 +31,13 @@ class RevectorizationBasedFilter : public Pass {
     find_.prepare(e, "rpcf_find.glsl");
     filter_.prepare(e, "rpcf_filter.glsl");
     report_bias(e);
+    warn_about_kernel(e, e.shape("shadow_map").extent.width);
   }
 
   void record(Context& c) override {
     const ImageShape shape = c.shape("visibility");
     for (uint32_t light = 0; light < shape.layers; ++light) {
+      if (find_.shade_shadowless(c, light)) continue;
       if (light > 0) c.own_barrier();  // the list is used again
       clear_pixel_list(c);
       c.own_barrier();

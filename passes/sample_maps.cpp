@@ -4,9 +4,11 @@
 #include <bit>
 #include <cstring>
 
+#include "engine/area_light.h"
 #include "engine/frame_data.h"
 #include "engine/light_fit.h"
 #include "engine/sobol.h"
+#include "passes/map_domain.h"
 
 namespace gnomon {
 namespace {
@@ -65,6 +67,7 @@ ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache, doub
 void SampleMaps::prepare(Environment& e, uint32_t capacity, bool split) {
   layers_ = e.shape("maps").layers;
   size_ = e.shape("maps").extent.width;
+  warn_about_maps(e, size_);
   RasterState state;
   state.vertex = "sample_maps.vert.glsl";
   state.depth = VK_FORMAT_D32_SFLOAT;
@@ -103,8 +106,11 @@ void SampleMaps::write(const Context& c, uint32_t face, uint32_t first, std::spa
   for (const LightPoint& point : points) {
     const glm::dvec3 offset = offset_in(c.scene().scene(), c.scene().faces()[face], point.local);
     const LightFace& wide = widened_[face];
+    const LightFace& own = c.scene().faces()[face];
     const glm::dvec2 texel = 2.0 * glm::dvec2(wide.half_width, wide.half_height) / double(size_);
-    const glm::dvec2 shift = converge_[face] > 0 ? texel * texel_shift(point.local) : glm::dvec2(0.0);
+    // Of a light so small that its samples' maps differ by less than a texel, no further than they differ.
+    const glm::dvec2 apart(wide.half_width - own.half_width, wide.half_height - own.half_height);
+    const glm::dvec2 shift = glm::min(texel, apart) * texel_shift(point.local);
     out->offset_weight = glm::vec4(offset, point.weight);
     (out++)->window = glm::vec4(shift - converge_[face] * glm::dvec2(offset), point.layer, 0.0);
   }
@@ -128,12 +134,15 @@ void SampleMaps::render(Context& c, uint32_t face, uint32_t first, const Targets
   c.render(targets, [&] { c.draw_scene(pipelines_, Cull::none, count); });
 }
 
-std::vector<bool> casts_shadow_in_view(const Environment& e) {
-  const Camera& camera = e.scene().cameras[e.settings().camera];
-  const double aspect = camera.aspect.value_or(double(e.settings().width) / e.settings().height);
-  const SceneFacts facts = scene_facts(e.scene(), camera, aspect);
-  if (e.settings().keep_all || facts.animated) return std::vector<bool>(e.scene().lights.size(), true);
-  return facts.casts_visible_shadow;
+void tell_left_out(Environment& e) {
+  const SceneFacts& facts = e.scene_facts();
+  for (uint32_t i = 0; i < facts.lights; ++i) {
+    const Light& light = e.scene().lights[i];
+    if (!facts.shadowless[i].empty())
+      e.left_out("maps of light '" + light.name + "'", facts.shadowless[i]);
+    else if (shines_as_area(light) && facts.shines_as_point(i))
+      e.left_out("area of light '" + light.name + "'", "its penumbrae are far narrower than a pixel");
+  }
 }
 
 }  // namespace gnomon

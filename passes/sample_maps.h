@@ -52,9 +52,8 @@ class SampleMaps {
   uint32_t layers_ = 0, size_ = 1;
 };
 
-// Per light: can a caster's shadow of it be in view (SceneFacts)? Where not, no map is needed. All, where the
-// scene moves or nothing is to be left out.
-std::vector<bool> casts_shadow_in_view(const Environment& e);
+// Tells which lights need no maps, and which only one, of their centres.
+void tell_left_out(Environment& e);
 
 // What area_query.glsl is pushed.
 struct AreaPush {

@@ -1,12 +1,12 @@
 #include <string>
 
 #include "engine/context.h"
+#include "passes/caster_layers.h"
+#include "passes/map_domain.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {
 namespace {
-
-constexpr uint32_t least_useful_side = 16;  // texels: below, shadows of the ordinary stability scene are lost
 
 class ShadowMap : public Pass {
  public:
@@ -19,6 +19,7 @@ class ShadowMap : public Pass {
     const uint32_t size = uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each face"));
     declare_encoding(d);
     const bool midpoint = declare_bias(d) == "midpoint";
+    const bool cache = d.flag("cache", false, "keep the map while no light and no caster moves");
     const ImageShape faces{{size, size}, d.setting().map_faces, 1, VK_FORMAT_D32_SFLOAT};
     ImageShape merged = faces;
     merged.format = VK_FORMAT_R32_SFLOAT;
@@ -29,16 +30,16 @@ class ShadowMap : public Pass {
     } else {
       d.output("depth", Access::depth, true, faces, "depth of the first surface; 1 where there is none");
     }
+    if (cache) d.keep("depth");
   }
 
   void prepare(Environment& e) override {
     const bool linear = e.params().choice("encoding") == "linear";
     const std::string& bias = e.params().choice("bias");
-    if (const uint32_t side = e.shape("depth").extent.width; side < least_useful_side)
-      e.warn("a map of " + std::to_string(side) + " texels a side tells little: use at least " +
-             std::to_string(least_useful_side));
+    warn_about_maps(e, e.shape("depth").extent.width);
     midpoint_ = bias == "midpoint";
     cull_ = bias == "back_face" ? Cull::front : Cull::none;
+    casters_.prepare(e, "depth");
     pipelines_ = make(e, linear, false);
     if (!midpoint_) return;
     peel_ = make(e, linear, true);
@@ -46,18 +47,25 @@ class ShadowMap : public Pass {
   }
 
   void record(Context& c) override {
-    const uint32_t layers = c.shape("depth").layers;
+    const bool kept = casters_.update(c, c.params().flag("cache"));
+    draws_ = kept ? 0 : casters_.draws();
+    if (kept) return;
+    const InstanceLayers& layers = casters_.of_map();
     const char* target = midpoint_ ? "first" : "depth";
     c.render({{}, DepthTarget{target, 1.0f}, {}}, [&] { c.draw_scene(pipelines_, cull_, layers); });
     if (!midpoint_) return;
     c.own_barrier();
     c.render({{}, DepthTarget{"second", 1.0f}, {}}, [&] { c.draw_scene(peel_, cull_, layers); });
     c.own_barrier();
-    c.dispatch_over(merge_, c.shape("depth").extent, layers);
+    const ImageShape shape = c.shape("depth");
+    c.dispatch_over(merge_, shape.extent, shape.layers);
   }
 
+  std::map<std::string, double> figures() const override { return {{"draws", draws_}}; }
+
  private:
-  // A fragment shader only where depth alone does not do.
+  // A fragment shader only where depth alone does not do. Where nothing may be left out all materials count
+  // as alpha-masked.
   static ScenePipelines make(Environment& e, bool linear, bool peel) {
     RasterState state;
     state.vertex = "shadow_map.vert.glsl";
@@ -66,16 +74,22 @@ class ShadowMap : public Pass {
     state.depth_compare = VK_COMPARE_OP_LESS;
     if (linear) state.defines.emplace_back("LINEAR_DEPTH", "1");
     if (peel) state.defines.emplace_back("PEEL", "1");
-    if (linear || peel) state.fragment = "shadow_map.glsl";
-    ScenePipelines pipelines;
-    pipelines.opaque = e.raster(state);
-    state.defines.emplace_back("MASKED", "1");
-    state.fragment = "shadow_map.glsl";
-    state.layout = VertexLayout::masked;
-    pipelines.masked = e.raster(state);
-    return pipelines;
+    RasterState masked = state;
+    masked.defines.emplace_back("MASKED", "1");
+    masked.fragment = "shadow_map.glsl";
+    masked.layout = VertexLayout::masked;
+    if (e.settings().keep_all) return {e.raster(masked), e.raster(masked)};
+    if (linear || peel)
+      state.fragment = "shadow_map.glsl";
+    else
+      e.left_out("fragment shader", e.scene_facts().has_alpha_mask
+                                        ? "depth alone will do for materials that are not alpha-masked"
+                                        : "no material is alpha-masked");
+    return {e.raster(state), e.scene_facts().has_alpha_mask ? e.raster(masked) : Pipeline{}};
   }
 
+  CasterLayers casters_;
+  double draws_ = 0;
   ScenePipelines pipelines_, peel_;
   Pipeline merge_;
   Cull cull_ = Cull::none;

@@ -17,6 +17,7 @@ class ShadowMoments : public Pass {
         "Klein 2015; Peters et al. 2017");
     const ImageShape map =
         d.input("shadow_map", Access::sampled, true, "depth from the light, a layer a face");
+    d.reads_around("shadow_map", 0, "moments");
     declare_encoding(d);
     const MomentLayout layout = declare_basis(d);
     d.output("moments", Access::storage_write, true,

@@ -10,6 +10,7 @@ class ShadowTest : public Pass {
     d.summary("Tests every camera pixel against the shadow map.");
     d.cite("Williams 1978; Macedo 2018, eq. 3.2");
     const ImageShape visibility = declare_receiver(d);
+    d.reads_around("shadow_map", 1);
     d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
   }
   void prepare(Environment& e) override {

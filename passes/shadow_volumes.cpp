@@ -59,6 +59,7 @@ class ShadowVolumes : public Pass {
     make_geometry(e);
     make_pipelines(e);
     casters_ = instance_bounds(e.scene());
+    shadowless_ = e.scene_facts().shadowless;
     camera_ = e.settings().camera;
     aspect_ = double(e.settings().width) / e.settings().height;
     far_ = e.settings().reversed_z ? 0.0f : 1.0f;
@@ -77,7 +78,7 @@ class ShadowVolumes : public Pass {
     choose(c.scene().scene());
     for (uint32_t light = 0; light < z_fail_.size(); ++light) {
       if (light > 0) c.own_barrier();
-      make_volumes(c, light);
+      if (shadowless_[light].empty()) make_volumes(c, light);
       count_volumes(c, light);
     }
   }
@@ -218,9 +219,11 @@ class ShadowVolumes : public Pass {
       const VkBuffer vertices = vertices_.handle();
       constexpr VkDeviceSize kStart = 0;
       vkCmdBindVertexBuffers(c.commands(), 0, 1, &vertices, &kStart);
-      draw_volumes(c, stage.sides, 0);
-      draw_volumes(c, stage.caps, 1);
-      draw_volumes(c, stage.turned_caps, 2);
+      if (shadowless_[light].empty()) {
+        draw_volumes(c, stage.sides, 0);
+        draw_volumes(c, stage.caps, 1);
+        draw_volumes(c, stage.turned_caps, 2);
+      }
       c.draw_fullscreen(resolve_);
     });
   }
@@ -243,8 +246,9 @@ class ShadowVolumes : public Pass {
   double aspect_ = 1;
   float far_ = 0;
   std::vector<Bounds> casters_;
-  std::vector<glm::dmat4> chosen_for_;  // the camera and the lights that z_fail_ is for
-  std::vector<uint32_t> z_fail_;        // per light
+  std::vector<std::string> shadowless_;  // SceneFacts
+  std::vector<glm::dmat4> chosen_for_;   // the camera and the lights that z_fail_ is for
+  std::vector<uint32_t> z_fail_;         // per light
 };
 
 GNOMON_PASS("shadow_volumes", ShadowVolumes);

@@ -25,12 +25,6 @@ struct Strips {
         layers(shape.layers) {}
 };
 
-// View depth of the scene's middle.
-double middle_depth(const Scene& scene, uint32_t camera) {
-  const glm::dvec3 eye(scene.cameras[camera].world_from_camera[3]);
-  return std::max(glm::length(scene.bounds.centre() - eye), 1e-30);
-}
-
 void clear_lists(Context& c) {
   for (const uint64_t list : {kAlongX, kAlongY}) {
     c.fill("control", 0, list * kWord, 2 * kWord);    // workgroups in x and y
@@ -48,7 +42,7 @@ void StripFilter::declare(Declaration& d) const {
   d.input("depth", Access::sampled, false, "the camera's device depth");
   d.input("geometric", Access::sampled, false, "octahedral geometric normal");
   d.number(
-      "width", 15, 1, 63, "pixels",
+      "width", 15, 0, 63, "pixels",
       "of the window at the reference depth; it goes with 1/depth, up to 63 pixels (Macedo 2018, eq. 4.4)");
   d.number("reference_depth", 0, 0, 1e9, "world units",
            "view depth at which the window has its width; 0: the camera's distance to the scene's middle");
@@ -78,6 +72,14 @@ void StripFilter::declare(Declaration& d) const {
                      "arguments of both lists, and the reach of the widest filter in pixels");
 }
 
+Need StripFilter::need(const SceneFacts& facts, const Params& params) const {
+  const double given = params.number("reference_depth");
+  const double widest = params.number("width") * (given > 0 ? given : facts.middle_depth) /
+                        std::max(facts.nearest_depth, 1e-300);
+  if (widest > 1) return Need::run();
+  return Need::bypass("visibility", "visibility", "the filter is nowhere wider than a pixel");
+}
+
 void StripFilter::prepare(Environment& e) {
   tiled_ = e.connected("tiles") && e.connected("arguments");
   classify_ = e.compute(tiled_ ? "strip_filter_tiles.glsl" : "strip_filter_classify.glsl");
@@ -86,7 +88,7 @@ void StripFilter::prepare(Environment& e) {
   along_x_ = e.compute(shader_);
   along_y_ = e.compute(shader_, {{"ALONG_Y_AXIS", "1"}});
   const double given = e.params().number("reference_depth");
-  reference_depth_ = float(given > 0 ? given : middle_depth(e.scene(), e.settings().camera));
+  reference_depth_ = float(given > 0 ? given : e.scene_facts().middle_depth);
   e.fact("reference_depth", reference_depth_);
 }
 

@@ -10,6 +10,7 @@ namespace gnomon {
 class StripFilter : public Pass {
  public:
   void declare(Declaration& d) const override;
+  Need need(const SceneFacts& facts, const Params& params) const override;
   void prepare(Environment& e) override;
   void record(Context& c) override;
 

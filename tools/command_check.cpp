@@ -36,7 +36,7 @@ std::string check_graph(const fs::path& file) {
   facts.triangles = 1;
   facts.lights = 1;
   facts.has_alpha_mask = facts.has_double_sided = facts.has_open_meshes = true;
-  facts.casts_visible_shadow = {true};
+  facts.shadowless = {{}};
   facts.light_size = {1};
   const Plan plan = compile(graph, Declaration::Setting{}, facts);
   return fmt::format("graph, {} pass{}", plan.nodes.size(), plan.nodes.size() == 1 ? "" : "es");

@@ -31,7 +31,7 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
   setting.lights = static_cast<uint32_t>(scene.lights.size());
   setting.map_faces = 0;
   for (const Light& light : scene.lights) setting.map_faces += light.type == LightType::point ? 6 : 1;
-  return compile(graph, setting, scene_facts(scene, camera, double(size.width) / double(size.height)));
+  return compile(graph, setting, scene_facts(scene, camera, camera.aspect.value_or(double(size.width) / size.height), size.height));
 }
 
 void print_passes(const Plan& plan) {

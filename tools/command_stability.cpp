@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "bench/progress.h"
+#include "bench/results.h"
 #include "bench/stability.h"
 #include "bench/stability_process.h"
 #include "engine/error.h"
@@ -22,11 +23,11 @@ namespace fs = std::filesystem;
 using Ran = StabilityMeasurement::Ran;
 
 struct Options {
-  std::vector<std::string> graphs, axes;
+  std::vector<std::string> graphs, axes, skipped;
   std::optional<std::string> test;
   fs::path out, json_file;
   double timeout = 600;  // seconds a case
-  bool quick = false;
+  bool quick = false, resume = false, overwrite = false;
   DeviceFlags device;
 };
 
@@ -34,6 +35,7 @@ StabilityOptions stability_options(const Options& options) {
   StabilityOptions result;
   result.quick = options.quick;
   result.memory = options.device.memory;
+  for (const std::string& test : options.skipped) result.skipped.push_back(parse_stability_case(test));
   return result;
 }
 
@@ -98,11 +100,57 @@ class CasesApart : public Cases {
   const Options& options_;
 };
 
+// What other cases answer, each on disk as soon as it is known, and not asked again by a walk that goes on.
+class CasesKept : public Cases {
+ public:
+  CasesKept(std::unique_ptr<Cases> cases, const Options& options)
+      : cases_(std::move(cases)), quick_(options.quick), file_(prepared(options), options.resume) {
+    for (nlohmann::json& row : read_results(file_.path()))
+      known_.insert_or_assign(row.at("key").get<std::string>(), std::move(row));
+  }
+  bool follows_light(const fs::path& graph) override {
+    const nlohmann::json row = asked(graph, "follows the light's size", [&](nlohmann::json& answer) {
+      answer["follows"] = cases_->follows_light(graph);
+    });
+    return row.at("follows").get<bool>();
+  }
+  StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool area) override {
+    const std::string name = to_string(test) + (area ? " against the area light" : "");
+    const nlohmann::json row = asked(graph, name, [&](nlohmann::json& answer) {
+      answer["measured"] = to_json(cases_->run(graph, test, area));
+    });
+    return measurement_from(row.at("measured"));
+  }
+
+ private:
+  static fs::path prepared(const Options& options) {
+    fs::path file = options.out / "cases.jsonl";
+    std::error_code ignored;
+    if (options.overwrite) fs::remove(file, ignored);
+    return file;
+  }
+  nlohmann::json asked(const fs::path& graph, const std::string& what,
+                       const std::function<void(nlohmann::json&)>& ask) {
+    const std::string key = fmt::format("{}{}: {}", graph.string(), quick_ ? " (quick)" : "", what);
+    if (const auto found = known_.find(key); found != known_.end()) return found->second;
+    nlohmann::json row = {{"key", key}};
+    ask(row);
+    file_.append(row);
+    return row;
+  }
+
+  std::unique_ptr<Cases> cases_;
+  bool quick_;
+  ResultsFile file_;
+  std::map<std::string, nlohmann::json> known_;
+};
+
 void print_row(const StabilityRow& row, const StabilityOptions& options) {
-  size_t count[4] = {};
-  for (const StabilityFinding& f : row.findings) ++count[static_cast<size_t>(f.verdict)];
-  fmt::print("{:<24}{} cases: {} hold, {} degrade, {} refused, {} fail\n", row.name, row.findings.size(),
-             count[0], count[1], count[2], count[3]);
+  std::map<StabilityVerdict, size_t> count;
+  for (const StabilityFinding& f : row.findings) ++count[f.verdict];
+  using enum StabilityVerdict;
+  fmt::print("{:<24}{} cases: {} hold, {} warned of, {} refused, {} degrade, {} fail\n", row.name,
+             row.findings.size(), count[holds], count[warned], count[refuses], count[degrades], count[fails]);
   for (const auto& [axis, sentence] : stated_domain(row)) fmt::print("  {:<18}{}\n", axis, sentence);
   for (const StabilityFinding& f : row.findings)
     if (f.verdict == StabilityVerdict::fails) {
@@ -192,6 +240,7 @@ int stability_command(const Options& options) {
     cases = std::make_unique<CasesHere>(options);
   else
     cases = std::make_unique<CasesApart>(options);
+  if (!options.out.empty()) cases = std::make_unique<CasesKept>(std::move(cases), options);
   return options.test ? one_case(options, *cases) : walk(options, *cases);
 }
 
@@ -228,8 +277,20 @@ void add_stability(CLI::App& app, int& status) {
   command->add_option("--timeout", options->timeout, "seconds for a case")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
-  command->add_option("--out,-o", options->out, "folder for stability.json and stability.md")
-      ->type_name("DIR");
+  command
+      ->add_option("--skip", options->skipped,
+                   "leave this point of an axis out, may be repeated: the largest take minutes on a CPU")
+      ->type_name("AXIS=VALUE")
+      ->take_all();
+  CLI::Option* out = command->add_option("--out,-o", options->out,
+                                         "folder for stability.json, stability.md and cases.jsonl");
+  out->type_name("DIR");
+  CLI::Option* resume =
+      command->add_flag("--resume", options->resume, "go on: what --out's cases.jsonl holds is not run again")
+          ->needs(out);
+  command->add_flag("--overwrite", options->overwrite, "throw away what --out holds")
+      ->needs(out)
+      ->excludes(resume);
   command->add_option("--json", options->json_file, "write stability.json here as well")->type_name("FILE");
   add_device_options(*command, options->device);
   command->footer(footer());

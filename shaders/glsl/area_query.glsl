@@ -28,7 +28,7 @@ int make_area_receiver(ivec2 pixel, out AreaReceiver receiver) {
   if (is_background(device_depth)) return PIXEL_BACKGROUND;
   if (!faces_light(light, p, n)) return PIXEL_AWAY;
   vec3 seen = face_project(faces[push.face], receiver.q);
-  return face_sees(seen) ? PIXEL_INSIDE : PIXEL_OUTSIDE;
+  return face_sees(seen) && in_range(light, p) ? PIXEL_INSIDE : PIXEL_OUTSIDE;
 }
 
 // The receiver's plane in the map of sample `s`, bias included.

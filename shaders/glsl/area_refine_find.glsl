@@ -46,5 +46,5 @@ void main() {
   uint place = word_place(push.part.x, at);
   lit_words[place] = (push.bit == 0u ? 0u : lit_words[place]) | lit << push.bit;
   edge_words[place] = (push.bit == 0u ? 0u : edge_words[place]) | edges << push.bit;
-  if (edges != 0u) list_pixel(at, size.x);
+  if (edges != 0u || (KEEP_ALL == 1 && count > 0u)) list_pixel(at, size.x);
 }

@@ -44,7 +44,7 @@ void main() {
   if (!listed_pixel(list_slot(), int(frame.viewport.x), at)) return;
   make_area_receiver(at, receiver);
   uint all_new = push.count < 32u ? (1u << push.count) - 1u : 0xFFFFFFFFu;
-  uint left = edge_words[word_place(push.part.x, at)] >> push.bit & all_new;
+  uint left = KEEP_ALL == 1 ? all_new : edge_words[word_place(push.part.x, at)] >> push.bit & all_new;
   while (left != 0u) {
     uint i = uint(findLSB(left));
     left &= left - 1u;

@@ -25,5 +25,5 @@ void main() {
   float v = lit != 0u ? 1.0 : 0.0;
   imageStore(visibility, ivec3(at, push.light), vec4(v));
   imageStore(labels, ivec3(at, push.light), vec4(penumbra ? 0.5 : v));
-  if (penumbra) list_pixel(at, size.x);
+  if (penumbra || KEEP_ALL == 1) list_pixel(at, size.x);
 }

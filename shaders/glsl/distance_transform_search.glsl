@@ -69,7 +69,7 @@ void main() {
       imageStore(nearest, ivec3(at, tile.layer), uvec4(site[k][i]));
       found_any = found_any || site[k][i] != NO_SITE;
     }
-  if (found_any) atomicOr(reached_any, 1u);
+  if (found_any || KEEP_ALL == 1) atomicOr(reached_any, 1u);
   barrier();
   if (gl_LocalInvocationID.x == 0u && reached_any != 0u) tiles[atomicAdd(arguments[3], 1u)] = candidates[index];
 }

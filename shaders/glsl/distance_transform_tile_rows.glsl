@@ -23,6 +23,6 @@ void main() {
   ivec2 across = (imageSize(nearest).xy + TILE - 1) / TILE;
   ivec2 tile = ivec2(gl_GlobalInvocationID.x, gl_WorkGroupID.y);
   int layer = int(gl_WorkGroupID.z);
-  if (tile.x >= across.x || !in_reach(tile, across, layer)) return;
+  if (tile.x >= across.x || !(KEEP_ALL == 1 || in_reach(tile, across, layer))) return;
   candidates[atomicAdd(candidate_arguments[3], 1u)] = pack_tile(tile, layer);
 }

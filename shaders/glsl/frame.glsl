@@ -92,6 +92,13 @@ bool faces_light(Light light, vec3 p, vec3 n) {
   return dot(n, light.position.w == LIGHT_DIRECTIONAL ? -light.direction.xyz : light.position.xyz - p) > 0.0;
 }
 
+// Beyond its range a light shines on nothing.
+bool in_range(Light light, vec3 p) {
+  float range = light.direction.w;
+  vec3 d = light.position.xyz - p;
+  return range == 0.0 || light.position.w == LIGHT_DIRECTIONAL || dot(d, d) <= range * range;
+}
+
 // The face of the shadow map that sees `p`: of a point light, the one of its major axis (+x -x +y -y +z -z).
 uint face_of(Light light, vec3 p) {
   if (light.faces.y == 1) return light.faces.x;

@@ -8,9 +8,16 @@ layout(location = 0) in vec3 in_relative;
 layout(location = 1) in vec2 in_uv;
 layout(location = 2) in vec3 in_normal;
 layout(location = 3) in vec4 in_color;
-layout(location = 0) out vec2 out_normal;
-layout(location = 1) out vec2 out_geometric;
-layout(location = 2) out vec4 out_albedo;
+// Channels that somebody reads; each is defined as its location.
+#ifdef NORMAL
+layout(location = NORMAL) out vec2 out_normal;
+#endif
+#ifdef GEOMETRIC
+layout(location = GEOMETRIC) out vec2 out_geometric;
+#endif
+#ifdef ALBEDO
+layout(location = ALBEDO) out vec4 out_albedo;
+#endif
 
 // From the triangle itself, not from screen derivatives: exact at silhouettes and on slivers.
 vec3 geometric_normal(Instance instance) {
@@ -31,7 +38,13 @@ void main() {
   // Double-sided meshes are seen from either side: normals turn to the camera.
   if (material.alpha.y != 0.0 && dot(geometric, in_relative) > 0.0) geometric = -geometric;
   if (dot(shading, geometric) < 0.0) shading = -shading;
+#ifdef NORMAL
   out_normal = octahedral_encode(shading);
+#endif
+#ifdef GEOMETRIC
   out_geometric = octahedral_encode(geometric);
+#endif
+#ifdef ALBEDO
   out_albedo = vec4(color.rgb, 1.0);
+#endif
 }

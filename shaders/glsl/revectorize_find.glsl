@@ -15,7 +15,7 @@ float tested(ivec2 at, float device_depth, vec3 normal, int width) {
   ivec2 texel = ivec2(floor(query.position));
   bvec4 neighbours;
   bool lit = is_lit_cross(query, texel, neighbours);
-  bool same = lit ? all(neighbours) : !any(neighbours);
+  bool same = KEEP_ALL == 0 && (lit ? all(neighbours) : !any(neighbours));
   bool inside = state == PIXEL_INSIDE;
   // The conservative form works on the lit side only.
   bool wanted = MODE == MODE_CONSERVATIVE ? lit : true;

@@ -14,7 +14,7 @@ void main() {
   ivec2 first = ivec2(floor(query.position)) - params.kernel / 2 - 1;
   // kernel + 2 texels a side, which is odd: the last quad takes in one more, which must not count.
   vec4 least = vec4(1.0), most = vec4(0.0);
-  int width = LIST == 1 ? params.kernel + 2 : 0;
+  int width = LIST == 1 && KEEP_ALL == 0 ? params.kernel + 2 : 0;
   for (int y = 0; y < width; y += 2)
     for (int x = 0; x < width; x += 2) {
       vec4 lit = lit_quad(query, first + ivec2(x, y));
@@ -23,7 +23,7 @@ void main() {
       least = min(least, lit);
       most = max(most, lit);
     }
-#if LIST == 0
+#if LIST == 0 || KEEP_ALL == 1
   least.x = 0.0;
   most.x = 1.0;
 #endif

@@ -59,7 +59,7 @@ int make_query(ivec2 pixel, float device_depth, vec3 n, out Query query) {
 #endif
   if (is_background(device_depth)) return PIXEL_BACKGROUND;
   if (facing <= 0.0) return PIXEL_AWAY;
-  return seen ? PIXEL_INSIDE : PIXEL_OUTSIDE;
+  return seen && in_range(light, p) ? PIXEL_INSIDE : PIXEL_OUTSIDE;
 }
 
 int make_query(ivec2 pixel, out Query query) {

@@ -20,7 +20,10 @@ const int MAX_HALF = 31;        // pixels that a filter reaches to each side at 
 
 // What a cell holds, as bits; none: it is as plain as its neighbours are.
 const uint HOLDS_LIGHT = 1u, HOLDS_SHADOW = 2u, HOLDS_BOTH = 3u;
-uint content_of(float visibility) { return (visibility > 0.0 ? HOLDS_LIGHT : 0u) | (visibility < 1.0 ? HOLDS_SHADOW : 0u); }
+uint content_of(float visibility) {
+  if (KEEP_ALL == 1) return HOLDS_BOTH;
+  return (visibility > 0.0 ? HOLDS_LIGHT : 0u) | (visibility < 1.0 ? HOLDS_SHADOW : 0u);
+}
 
 // Words of `control`: the arguments of the strips along x and along y, and the reach of the widest filter in this frame.
 const int ALONG_X = 0, ALONG_Y = 4, REACH = 8;

@@ -74,6 +74,58 @@ TEST(Rounds, AFailureLeavesTheOthersAlone) {
   EXPECT_EQ(samples[1].plain.size(), 4u);
 }
 
+// A takes 1 ms a frame, B 40 ms, within 100 ms: B has its least, three rounds, and one with stamps; A as many
+// as there are rounds. B's second warm-up frame fits, and so does the frame that settles the stamps.
+TEST(Rounds, ALimitOfTimeLeavesOutTheRoundsOfSlowTechniques) {
+  std::string log;
+  Scripted a("A", {1}, log), b("B", {40}, log);
+  RoundSettings settings{2, 5, 2};
+  settings.seconds = 0.1;
+  settings.least = 3;
+  double last = 0;
+  const auto samples = run_rounds({&a, &b}, settings, [&](double share) { last = share; });
+  EXPECT_EQ(samples[0].plain.size(), 5u);
+  EXPECT_EQ(samples[1].plain.size(), 3u);
+  EXPECT_EQ(samples[0].overlapped.size(), 2u);
+  EXPECT_EQ(samples[1].overlapped.size(), 2u);
+  EXPECT_EQ(log.substr(0, 4 + 8), "ABABABABABAA");
+  EXPECT_DOUBLE_EQ(last, 1);
+}
+
+TEST(Rounds, AFrameLongerThanTheLimitIsTakenTheLeastNumberOfTimes) {
+  std::string log;
+  Scripted a("A", {500}, log);
+  RoundSettings settings{3, 9, 4};
+  settings.seconds = 0.1;
+  settings.least = 2;
+  const auto samples = run_rounds({&a}, settings);
+  EXPECT_EQ(samples[0].plain.size(), 2u);
+  EXPECT_EQ(samples[0].overlapped.size(), 1u);
+  EXPECT_EQ(samples[0].isolated.size(), 1u);
+  EXPECT_EQ(log, "AAAAA");  // one to warm up, none to settle
+}
+
+TEST(Rounds, TheBaselineStaysAsLongAsAnyOther) {
+  std::string log;
+  Scripted a("A", {500}, log), b("B", {20}, log);
+  RoundSettings settings{1, 4, 0};
+  settings.seconds = 0.1;
+  settings.least = 1;
+  settings.baseline = 0;
+  const auto samples = run_rounds({&a, &b}, settings);
+  EXPECT_EQ(samples[1].plain.size(), 4u);
+  EXPECT_EQ(samples[0].plain.size(), 4u);
+}
+
+TEST(Rounds, SequencesHaveNoLimit) {
+  std::string log;
+  Scripted a("A", {500}, log);
+  RoundSettings settings{1, 4, 0, true};
+  settings.seconds = 0.1;
+  settings.least = 1;
+  EXPECT_EQ(run_rounds({&a}, settings)[0].plain.size(), 4u);
+}
+
 TEST(Rounds, ProgressEndsAtOne) {
   std::string log;
   Scripted a("A", {1}, log);
@@ -294,6 +346,22 @@ TEST_F(HarnessTest, ChangedSettingsAreMeasuredAnew) {
   options_.resume = true;
   suite_.repeat = 4;
   EXPECT_EQ(run().measured, 2u);
+}
+
+TEST_F(HarnessTest, ALimitOfTimeKeepsPairsWithTheBaseline) {
+  add("slow", 0);
+  ms_ = {{"base", {10}}, {"slow", {60}}};
+  suite_.scenes.resize(1);
+  suite_.repeat = 8;
+  suite_.seconds = 0.2;
+  suite_.least = 2;
+  run();
+  EXPECT_EQ(rows()[0]["frame_ms"]["n"], 8);
+  EXPECT_EQ(rows()[1]["frame_ms"]["n"], 3);
+  EXPECT_EQ(rows()[1]["ratio"]["n"], 3);
+  EXPECT_EQ(rows()[1]["ratio"]["median"], 6);
+  EXPECT_TRUE(rows()[1]["harness_seconds"].contains("frames"));
+  EXPECT_EQ(json::parse(std::ifstream(options_.out / "suite.json"))["seconds"], 0.2);
 }
 
 TEST_F(HarnessTest, ResultsAreNotOverwrittenUnasked) {

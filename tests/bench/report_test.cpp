@@ -170,6 +170,21 @@ TEST(Compare, TimeNeedsIntervalsApartAndTheTolerance) {
   EXPECT_FALSE(faster.regressed());
 }
 
+TEST(Compare, CountsTheIntervalsThatOverlap) {
+  // Intervals are 2 % to both sides; the baseline's own says nothing.
+  json baseline = row("shadow_mapping", 512, 5, 0.3);
+  baseline["ratio"]["ci95"] = {1, 1};
+  const std::vector<json> before = {baseline, row("pcf", 512, 10, 0.2, 2), row("esm", 512, 10, 0.2, 2)};
+  const Comparison comparison =
+      compare_results(before, {baseline, row("pcf", 512, 10, 0.2, 2.05), row("esm", 512, 10, 0.2, 1.9)}, 0.1);
+  EXPECT_EQ(comparison.intervals, 2u);
+  EXPECT_EQ(comparison.overlapping, 1u);
+  EXPECT_EQ(comparison.overlap(), 0.5);
+  EXPECT_TRUE(comparison.changes.empty());  // within the tolerance
+  EXPECT_NE(to_table(comparison).find("1 of 2 intervals"), std::string::npos);
+  EXPECT_EQ(compare_results(before, {}, 0).overlap(), 1);
+}
+
 TEST(Compare, ErrorsAreExact) {
   const std::vector<json> before = {row("pcf", 512, 10, 0.25)};
   const Comparison worse = compare_results(before, {row("pcf", 512, 10, std::nextafter(0.25, 1))}, 0.05);

@@ -79,6 +79,24 @@ TEST(StabilityVerdicts, WhatMayNeverHappenFailsWhateverTheError) {
   EXPECT_EQ(judge_stability({}, refused, base).verdict, Verdict::refuses);
 }
 
+TEST(StabilityVerdicts, AWarningOfItsOwnPutsACaseOutsideTheDomain) {
+  StabilityMeasurement base = measured(0.1);
+  base.warnings = {"an open mesh"};
+  StabilityMeasurement m = measured(0.3);
+  m.warnings = {"an open mesh"};
+  EXPECT_EQ(judge_stability({}, m, base).verdict, Verdict::degrades);
+  m.warnings.emplace_back("the light grazes");
+  const StabilityFinding warned = judge_stability({}, m, base);
+  EXPECT_EQ(warned.verdict, Verdict::warned);
+  EXPECT_NE(warned.reason.find("the light grazes"), std::string::npos);
+  m.rmse = 0.9;
+  EXPECT_EQ(judge_stability({}, m, base).verdict, Verdict::warned);
+  m.rmse = 0.1;  // it holds nevertheless
+  EXPECT_EQ(judge_stability({}, m, base).verdict, Verdict::holds);
+  m.nonfinite = 1;  // what may never happen, warned of or not
+  EXPECT_EQ(judge_stability({}, m, base).verdict, Verdict::fails);
+}
+
 TEST(StabilityMeasurements, SurviveJson) {
   StabilityMeasurement m = measured(0.25);
   m.nonfinite = 3, m.out_of_range = 2, m.repeats = false, m.misclassified = 0.125, m.acne = 0.5;
@@ -124,6 +142,14 @@ TEST(StabilityWalk, MapsAxesStatesDomainsAndReproduces) {
   EXPECT_EQ(pairs, 3u);
   const std::string report = stability_report({row}, whole);
   EXPECT_NE(report.find("| fov | degrades 170 |"), std::string::npos) << report;
+}
+
+TEST(StabilityWalk, LeavesOutSkippedPoints) {
+  StabilityOptions whole;
+  whole.skipped = {{{"fov", "170"}}, {{"scale", "1e6"}}};
+  const StabilityRow row = walk_stability("g.json", false, whole, {"fov", "scale"}, pretend);
+  for (const StabilityFinding& f : row.findings) EXPECT_EQ(f.verdict, Verdict::holds) << to_string(f.test);
+  EXPECT_FALSE(row.findings.empty());
 }
 
 TEST(StabilityWalk, EndsWhereTheBaseCaseFails) {

@@ -164,7 +164,7 @@ TEST(Animation, ParentsCarryInstancesCamerasAndLights) {
   EXPECT_TRUE(facts.animated);
   EXPECT_TRUE(facts.casters_move);
   EXPECT_EQ(facts.light_moves, std::vector<bool>{true});
-  EXPECT_TRUE(facts.casts_visible_shadow[0]);  // it may, later on
+  EXPECT_EQ(facts.shadowless[0], "");  // it may, later on
 }
 
 TEST(Animation, StillScenesHaveNone) {

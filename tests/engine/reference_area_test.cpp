@@ -233,7 +233,7 @@ TEST(ReferenceArea, FactsKnowTheShapes) {
   };
   EXPECT_EQ(facts({Shape::disc, 1.5, 1.5, {}, {}}).light_size[0], 1.5);
   EXPECT_EQ(facts(polygon_light({{0, 0}, {0.25, 0}, {0, 1}})).light_size[0], 2.0);
-  EXPECT_TRUE(facts({Shape::sphere, 1, 1, {}, {}}).casts_visible_shadow[0]);
+  EXPECT_EQ(facts({Shape::sphere, 1, 1, {}, {}}).shadowless[0], "");
 }
 
 // Acne and leaks are counted away from edges: of every point on the light's border.

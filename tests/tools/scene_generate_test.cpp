@@ -50,7 +50,7 @@ TEST_P(GeneratedScene, LoadsWithoutWarnings) {
   EXPECT_EQ(scene.lights[0].type, GetParam() == "hills" ? LightType::directional : LightType::spot);
   EXPECT_EQ(scene.lights[0].area.has_value(), GetParam() != "hills");
   const SceneFacts facts = scene_facts(scene, scene.cameras[0], 16.0 / 9.0);
-  EXPECT_TRUE(facts.casts_visible_shadow[0]);
+  EXPECT_EQ(facts.shadowless[0], "");
   EXPECT_EQ(facts.has_alpha_mask, GetParam() == "foliage");
 }
 

@@ -1,0 +1,132 @@
+#include "passes/map_domain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace gnomon {
+namespace {
+
+constexpr double steep_slope = 20;          // STEEP of shaders/glsl/lib/receiver_plane.glsl
+constexpr double most_grazed = 0.5;         // share of the lit surface beyond which a light is warned of
+constexpr double most_of_map = 0.1;         // share of the map's side that a filter may be wide
+constexpr uint32_t least_useful_side = 16;  // texels: below, shadows of the ordinary stability scene are lost
+constexpr double least_texels = 0.5;        // of the map's side, a pixel of the image's
+constexpr uint64_t most_triangles = 1 << 17;  // looked at, evenly spread over the scene's
+
+using Corners = std::array<glm::dvec3, 3>;
+
+// `triangle`: of the mesh; with light_from_object in the light's frame.
+Corners corners(const Mesh& mesh, size_t triangle, const glm::dmat4& to) {
+  Corners result;
+  for (size_t k = 0; k < 3; ++k)
+    result[k] = glm::dvec3(to * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[3 * triangle + k]]), 1.0));
+  return result;
+}
+
+struct LitArea {
+  double all = 0, grazed = 0;
+};
+
+// `c` in the light's frame. `front`: 1 where its winding shows the front, -1 of a mirrored instance, 0 where
+// both sides count.
+void add(LitArea& area, const Corners& c, bool directional, int front) {
+  const glm::dvec3 twice = glm::cross(c[1] - c[0], c[2] - c[0]), middle = (c[0] + c[1] + c[2]) / 3.0;
+  const glm::dvec3 to_light = directional ? glm::dvec3(0, 0, 1) : -middle;
+  const double size = glm::length(twice), distance = glm::length(to_light);
+  if (!(size > 0) || !(distance > 0)) return;
+  double cosine = glm::dot(twice, to_light) / (size * distance);
+  cosine = front == 0 ? std::abs(cosine) : front * cosine;
+  if (cosine <= 0) return;
+  area.all += size;
+  if (cosine * cosine * (1 + steep_slope * steep_slope) < 1) area.grazed += size;
+}
+
+bool crosses(const Corners& c,
+             const glm::dvec3& direction) {  // a ray from the origin (Moeller and Trumbore 1997)
+  const glm::dvec3 a = c[1] - c[0], b = c[2] - c[0], p = glm::cross(direction, b);
+  const double determinant = glm::dot(a, p);
+  if (determinant == 0) return false;
+  const double u = -glm::dot(c[0], p) / determinant;
+  const glm::dvec3 q = glm::cross(-c[0], a);
+  const double v = glm::dot(direction, q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && glm::dot(b, q) / determinant > 0;
+}
+
+bool inside(const Mesh& mesh, const glm::dmat4& light_from_object) {
+  const glm::dvec3 place(glm::inverse(light_from_object)[3]);
+  if (glm::any(glm::lessThan(place, mesh.bounds.min)) || glm::any(glm::greaterThan(place, mesh.bounds.max)))
+    return false;
+  const glm::dvec3 direction(0.5377, 0.7071, 0.4591);  // along no axis, so that it seldom meets an edge
+  bool odd = false;
+  for (size_t i = 0; i < mesh.triangles(); ++i)
+    odd ^= crosses(corners(mesh, i, light_from_object), direction);
+  return odd;
+}
+
+}  // namespace
+
+double grazed_share(const Scene& scene, const Light& light) {
+  const glm::dmat4 light_from_world = glm::inverse(light.world_from_light);
+  const uint64_t stride = 1 + scene.triangles() / most_triangles;
+  LitArea area;
+  uint64_t place = 0;  // of the instance's first triangle among all
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const glm::dmat4 to = light_from_world * instance.world_from_object;
+    const int winding = glm::determinant(to) < 0 ? -1 : 1;
+    const int front = scene.materials[mesh.material].double_sided ? 0 : winding;
+    for (uint64_t i = (stride - place % stride) % stride; i < mesh.triangles(); i += stride)
+      add(area, corners(mesh, i, to), light.type == LightType::directional, front);
+    place += mesh.triangles();
+  }
+  return area.all > 0 ? area.grazed / area.all : 0;
+}
+
+const Instance* surrounding_caster(const Scene& scene, const Light& light) {
+  if (light.type == LightType::directional) return nullptr;
+  const glm::dmat4 light_from_world = glm::inverse(light.world_from_light);
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.watertight && inside(mesh, light_from_world * instance.world_from_object)) return &instance;
+  }
+  return nullptr;
+}
+
+namespace {
+
+void warn_about_light(Environment& e, const Light& light) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  if (const double share = grazed_share(e.scene(), light); share > most_grazed)
+    e.warn(fmt::format(
+        "light '{}' meets {:.0f} % of what it shines on at more than {:.0f} degrees from the normal: "
+        "shadows there are coarser than elsewhere",
+        light.name, 100 * share, std::atan(steep_slope) * degrees));
+  if (const Instance* caster = surrounding_caster(e.scene(), light))
+    e.warn(
+        fmt::format("light '{}' is inside of '{}', which leaves few texels' depths for the rest of the scene",
+                    light.name, caster->name));
+}
+
+}  // namespace
+
+void warn_about_maps(Environment& e, uint32_t side) {
+  const uint32_t pixels = std::max(e.settings().width, e.settings().height);
+  if (side < least_useful_side)
+    e.warn(fmt::format("a map of {} texels a side tells little: use at least {}", side, least_useful_side));
+  else if (side < least_texels * pixels)
+    e.warn(fmt::format("a map of {} texels a side is coarse for an image of {} pixels", side, pixels));
+  for (const Light& light : e.scene().lights) warn_about_light(e, light);
+}
+
+void warn_about_kernel(Environment& e, uint32_t side) {
+  const auto kernel = e.params().integer("kernel");
+  if (kernel > 1 && static_cast<double>(kernel) > most_of_map * side)
+    e.warn(fmt::format("a kernel of {} texels covers much of a map of {}: shadows are blurred away", kernel,
+                       side));
+}
+
+}  // namespace gnomon
