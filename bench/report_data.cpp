@@ -102,6 +102,7 @@ json row_of(const ReportRow& source) {
           {"baseline", is_baseline(row)},
           {"ms", ms},
           {"ratio", interval_at(row, "/ratio")},
+          {"ratio_to", row.value("/ratio/baseline"_json_pointer, json())},
           {"errors", errors_of(row)},
           {"passes", std::move(passes)},
           {"rest_ms", rest},
@@ -130,12 +131,29 @@ json metrics_of(const json& rows) {
   return metrics;
 }
 
-json front_of(const json& rows, const std::vector<size_t>& ids, const std::string& metric) {
+// What the row would have taken had the machine been as it was for the baseline: the ratio, which rounds of
+// the same moment gave, times the baseline's median. `ms` where there is no ratio or baseline.
+json steady_ms_of(const json& row, const json& rows, const std::vector<size_t>& ids) {
+  if (row["baseline"] == true || row["ratio"].is_null()) return row["ms"];
+  for (const size_t id : ids) {
+    const json& other = rows[id];
+    if (other["baseline"] != true || other["label"] != row["ratio_to"]) continue;
+    const auto scale = figure_at(other, "/ms/median");
+    if (!scale) continue;
+    json steady = row["ratio"];
+    for (const char* name : {"median", "low", "high"}) steady[name] = *scale * steady[name].get<double>();
+    return steady;
+  }
+  return row["ms"];
+}
+
+// `time`: "ms" or "steady_ms".
+json front_of(const json& rows, const std::vector<size_t>& ids, const std::string& metric, const char* time) {
   std::vector<TimeAndError> candidates;
   std::vector<size_t> of;
   for (const size_t id : ids) {
-    if (rows[id]["ms"].is_null() || !rows[id]["errors"].contains(metric)) continue;
-    candidates.push_back({rows[id]["ms"]["median"], rows[id]["errors"][metric]["value"]});
+    if (rows[id][time].is_null() || !rows[id]["errors"].contains(metric)) continue;
+    candidates.push_back({rows[id][time]["median"], rows[id]["errors"][metric]["value"]});
     of.push_back(id);
   }
   json front = json::array();
@@ -154,11 +172,16 @@ json places_of(json& rows, const std::vector<json>& keys, const json& metrics) {
     rows[id]["place"] = place;
   }
   for (size_t i = 0; i < places.size(); ++i) {
-    json fronts = json::object();
-    for (const json& metric : metrics)
-      fronts[metric["name"].get<std::string>()] = front_of(rows, members[i], metric["name"]);
+    for (const size_t id : members[i]) rows[id]["steady_ms"] = steady_ms_of(rows[id], rows, members[i]);
+    json fronts = json::object(), steady_fronts = json::object();
+    for (const json& metric : metrics) {
+      const std::string name = metric["name"];
+      fronts[name] = front_of(rows, members[i], name, "ms");
+      steady_fronts[name] = front_of(rows, members[i], name, "steady_ms");
+    }
     places[i]["rows"] = members[i];
     places[i]["fronts"] = std::move(fronts);
+    places[i]["steady_fronts"] = std::move(steady_fronts);
   }
   return places;
 }
@@ -300,9 +323,12 @@ json report_data(const std::vector<ReportRow>& sources) {
 
 std::string report_csv(const json& report) {
   std::string text =
-      "scene,width,height,device,technique,label,baseline,ms,ms_low,ms_high,ratio,ratio_low,ratio_high,peak_"
-      "bytes";
-  for (const json& metric : report["metrics"]) text += "," + csv_text(metric["name"]);
+      "scene,width,height,device,technique,label,baseline,ms,ms_low,ms_high,ratio,ratio_low,ratio_high,"
+      "steady_ms,steady_ms_low,steady_ms_high,peak_bytes";
+  for (const json& metric : report["metrics"]) {
+    const std::string name = csv_text(metric["name"]);
+    text += fmt::format(",{0},{0}_low,{0}_high", name);
+  }
   text += ",pareto\r\n";
   for (const json& row : report["rows"]) {
     const json& place = report["places"][row["place"].get<size_t>()];
@@ -311,15 +337,17 @@ std::string report_csv(const json& report) {
       return value ? fmt::format("{}", *value) : std::string();
     };
     std::vector<std::string> cells = {
-        csv_text(place["scene"]),  at(place, "/size/0"),       at(place, "/size/1"),
-        csv_text(place["device"]), csv_text(row["technique"]), csv_text(row["label"]),
-        row["baseline"].dump(),    at(row, "/ms/median"),      at(row, "/ms/low"),
-        at(row, "/ms/high"),       at(row, "/ratio/median"),   at(row, "/ratio/low"),
-        at(row, "/ratio/high"),    at(row, "/peak_bytes")};
+        csv_text(place["scene"]),   at(place, "/size/0"),         at(place, "/size/1"),
+        csv_text(place["device"]),  csv_text(row["technique"]),   csv_text(row["label"]),
+        row["baseline"].dump(),     at(row, "/ms/median"),        at(row, "/ms/low"),
+        at(row, "/ms/high"),        at(row, "/ratio/median"),     at(row, "/ratio/low"),
+        at(row, "/ratio/high"),     at(row, "/steady_ms/median"), at(row, "/steady_ms/low"),
+        at(row, "/steady_ms/high"), at(row, "/peak_bytes")};
     std::string fronts;
     for (const json& metric : report["metrics"]) {
       const std::string name = metric["name"];
-      cells.push_back(at(row, ("/errors/" + name + "/value").c_str()));
+      for (const char* figure : {"value", "low", "high"})
+        cells.push_back(at(row, ("/errors/" + name + "/" + figure).c_str()));
       const json& front = place["fronts"][name];
       if (std::find(front.begin(), front.end(), row["id"]) != front.end())
         fronts += (fronts.empty() ? "" : " ") + name;

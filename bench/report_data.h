@@ -12,11 +12,15 @@ namespace gnomon {
 // The content of report.json:
 //   metrics  [{name, definition, unit}]  those that some row has; less is better in each
 //   places   [{scene, size, camera, device, driver, samples, frames, baseline, rows: [id], fronts: {metric:
-//   [id]}}]
-//            what can be compared with one another; `fronts`: the Pareto fronts in milliseconds and that
-//            metric
-//   rows     [{id, place, technique, label, baseline, ms, ratio, errors: {metric: {value, low, high}},
+//   [id]}, steady_fronts: {metric: [id]}}]
+//            what can be compared with one another; `fronts`: the Pareto fronts of that metric and `ms`, and
+//            of that metric and `steady_ms`
+//   rows     [{id, place, technique, label, baseline, ms, steady_ms, ratio, ratio_to, errors: {metric:
+//   {value, low, high}},
 //             passes: [{id, type, ms}], rest_ms, peak_bytes, left_out, warnings, images, vars, set, key}]
+//            `steady_ms`: ratio x the median of the baseline `ratio_to`, so that rows measured at different
+//            times can be compared though the machine became slower or quicker between them; `ms` where there
+//            is no ratio
 //   sweeps   [{scene, technique, parameter, fixed, rows: [id], x: [..], ms: fit, errors: {metric: fit}}]
 //            rows that differ in one numeric variable, or in the output's size (`output_pixels`), only; a fit
 //            is {exponent, factor, r2, n} or null

@@ -10,6 +10,7 @@ namespace {
 class ImageSource : public Pass {
  public:
   void declare(Declaration& d) const override {
+    d.darkens_lit_surfaces();  // whatever the scene casts
     d.summary("Shows an image that the program gives (RenderSettings::images), as if a pass had made it.");
     d.output("value", Access::transfer_write, true, {d.setting().viewport, 1, 1, VK_FORMAT_R32_SFLOAT},
              "the image's first channel");

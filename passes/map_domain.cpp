@@ -14,6 +14,7 @@ constexpr double steep_slope = 20;          // STEEP of shaders/glsl/lib/receive
 constexpr double most_grazed = 0.5;         // share of the lit surface beyond which a light is warned of
 constexpr double most_of_map = 0.1;         // share of the map's side that a filter may be wide
 constexpr uint32_t least_useful_side = 16;  // texels: below, shadows of the ordinary stability scene are lost
+constexpr double most_rise = 0.1;           // share of the depth range over half a kernel
 constexpr double least_texels = 0.5;        // of the map's side, a pixel of the image's
 constexpr uint64_t most_triangles = 1 << 17;  // looked at, evenly spread over the scene's
 
@@ -28,6 +29,7 @@ Corners corners(const Mesh& mesh, size_t triangle, const glm::dmat4& to) {
 }
 
 struct LitArea {
+  double slope;  // from which a surface counts as grazed
   double all = 0, grazed = 0;
 };
 
@@ -42,7 +44,7 @@ void add(LitArea& area, const Corners& c, bool directional, int front) {
   cosine = front == 0 ? std::abs(cosine) : front * cosine;
   if (cosine <= 0) return;
   area.all += size;
-  if (cosine * cosine * (1 + steep_slope * steep_slope) < 1) area.grazed += size;
+  if (cosine * cosine * (1 + area.slope * area.slope) < 1) area.grazed += size;
 }
 
 bool crosses(const Corners& c,
@@ -69,10 +71,10 @@ bool inside(const Mesh& mesh, const glm::dmat4& light_from_object) {
 
 }  // namespace
 
-double grazed_share(const Scene& scene, const Light& light) {
+double grazed_share(const Scene& scene, const Light& light, double slope) {
   const glm::dmat4 light_from_world = glm::inverse(light.world_from_light);
   const uint64_t stride = 1 + scene.triangles() / most_triangles;
-  LitArea area;
+  LitArea area{slope};
   uint64_t place = 0;  // of the instance's first triangle among all
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -100,7 +102,7 @@ namespace {
 
 void warn_about_light(Environment& e, const Light& light) {
   constexpr double degrees = 180 / std::numbers::pi;
-  if (const double share = grazed_share(e.scene(), light); share > most_grazed)
+  if (const double share = grazed_share(e.scene(), light, steep_slope); share > most_grazed)
     e.warn(fmt::format(
         "light '{}' meets {:.0f} % of what it shines on at more than {:.0f} degrees from the normal: "
         "shadows there are coarser than elsewhere",
@@ -127,6 +129,24 @@ void warn_about_kernel(Environment& e, uint32_t side) {
   if (kernel > 1 && static_cast<double>(kernel) > most_of_map * side)
     e.warn(fmt::format("a kernel of {} texels covers much of a map of {}: shadows are blurred away", kernel,
                        side));
+}
+
+void warn_about_rise(Environment& e, uint32_t side) {
+  const double half_kernel = 0.5 * static_cast<double>(e.params().integer("kernel"));
+  for (const LightFace& face : e.gpu_scene().faces()) {
+    const double middle = face.orthographic ? 1.0 : 0.5 * (face.near + face.far);
+    const double texel = 2 * std::max(face.half_width, face.half_height) * middle / side;
+    const double slope = most_rise * (face.far - face.near) / (half_kernel * texel);
+    const Light& light = e.scene().lights[face.light];
+    const double share = slope < steep_slope ? grazed_share(e.scene(), light, slope) : 0;
+    if (share <= most_grazed) continue;
+    e.warn(
+        fmt::format("{:.0f} % of what light '{}' shines on rises, within half a kernel of {:.0f} texels, "
+                    "over more than {:.0f} % "
+                    "of the map's depth range: a smaller kernel or a larger map would tell it from occluders",
+                    100 * share, light.name, 2 * half_kernel, 100 * most_rise));
+    return;
+  }
 }
 
 }  // namespace gnomon

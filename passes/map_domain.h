@@ -9,10 +9,10 @@
 
 namespace gnomon {
 
-// Share of the surface that faces the light (0 to 1, by area), casters and receivers alike, which it meets at
-// more than the steep slope of shaders/glsl/lib/receiver_plane.glsl: there one texel covers twenty times its
-// width in depth. A point of the light's place stands for all of its area. 0 when nothing faces it.
-double grazed_share(const Scene& scene, const Light& light);
+// Share of the surface that faces the light (0 to 1, by area), casters and receivers alike, that is steeper
+// than `slope`: the tangent of the light's angle to its normal. The light's place stands for all of its area.
+// 0 when nothing faces it.
+double grazed_share(const Scene& scene, const Light& light, double slope);
 
 // The watertight instance that the light's place is inside of, or nullptr. A directional light is nowhere.
 const Instance* surrounding_caster(const Scene& scene, const Light& light);
@@ -20,7 +20,10 @@ const Instance* surrounding_caster(const Scene& scene, const Light& light);
 // Warnings of a pass that renders shadow maps of `side` texels: too few texels, lights that graze most of
 // what they shine on, lights inside of a caster.
 void warn_about_maps(Environment& e, uint32_t side);
-// Of a pass with the parameter `kernel`, texels, that filters a map of `side` texels.
+// Of a pass with the parameter `kernel`, texels, that filters maps of `side` texels.
 void warn_about_kernel(Environment& e, uint32_t side);
+// Of such a pass that filters depths, not tests: receivers must not rise over much of the map's depth range
+// within the kernel.
+void warn_about_rise(Environment& e, uint32_t side);
 
 }  // namespace gnomon

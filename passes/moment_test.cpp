@@ -40,6 +40,7 @@ class MomentTest : public Pass {
     test_.prepare(e, "moment_test.glsl", defines);
     report_bias(e);
     warn_about_kernel(e, e.shape("shadow_map").extent.width);
+    warn_about_rise(e, e.shape("shadow_map").extent.width);
   }
 
   void record(Context& c) override { test_.dispatch_all(c); }

@@ -1,5 +1,6 @@
 #include "engine/context.h"
 #include "passes/map_domain.h"
+#include "passes/min_max_map.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {
@@ -19,16 +20,27 @@ class PercentageCloserFilter : public Pass {
         "Vogel's spiral over a disc");
     d.integer("samples", 32, 1, 1024, "samples", "vogel: tests a pixel");
     d.flag("rotate", true, "vogel: turn the spiral from pixel to pixel, which makes bands into noise");
+    const bool min_max = d.flag("min_max", false,
+                                "filter only where a min-max map does not tell that all of the window is lit "
+                                "or in umbra; the result is the same");
+    if (min_max) MinMaxMap::declare(d, d.find("shadow_map")->image);
     d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
   }
   void prepare(Environment& e) override {
-    filter_.prepare(e, "pcf.glsl");
+    min_max_ = e.params().flag("min_max") && !e.settings().keep_all;
+    filter_.prepare(e, "pcf.glsl", {{"USE_MIN_MAX", min_max_ ? "1" : "0"}});
+    if (min_max_) map_.prepare(e, uint32_t(e.params().integer("kernel")) / 2 + 1);
     report_bias(e);
     warn_about_kernel(e, e.shape("shadow_map").extent.width);
   }
-  void record(Context& c) override { filter_.dispatch_all(c); }
+  void record(Context& c) override {
+    if (min_max_) map_.record(c);
+    filter_.dispatch_all(c);
+  }
 
  private:
+  MinMaxMap map_;
+  bool min_max_ = false;
   PerLight filter_;
 };
 

@@ -27,6 +27,7 @@ using nlohmann::json;
 
 struct Options {
   std::string suite, shard = "1/1";
+  std::vector<std::string> scenes;
   fs::path out, json_file, compare;
   double tolerance = 0.05;
   DeviceFlags device;
@@ -75,6 +76,12 @@ int bench_command(const Options& options) {
   std::vector<json> old_rows;
   if (!options.compare.empty()) old_rows = read_results(options.compare);
   Suite suite = load_suite(find_suite(options.suite));
+  if (!options.scenes.empty()) {
+    suite.scenes.clear();
+    suite.notices.clear();
+    for (const std::string& scene : options.scenes)
+      suite.scenes.push_back(fs::weakly_canonical(find_scene(scene)));
+  }
   if (options.repeat > 0) suite.repeat = options.repeat;
   suite.memory = options.device.memory;
   suite.images = suite.images || options.images;
@@ -119,8 +126,14 @@ void add_bench(CLI::App& app, int& status) {
       app.add_subcommand("bench", "measure a suite of techniques and scenes; ends with a table");
   command
       ->add_option("SUITE", options->suite,
-                   "a suite file, or the name of one in bench/suites (demo, hard, bias)")
+                   "a suite file, or the name of one in bench/suites (demo, full, hard, ...)")
       ->required();
+  command
+      ->add_option(
+          "--scene", options->scenes,
+          "a glTF file, or the name of a scene in assets/scenes, instead of the suite's; may be repeated")
+      ->type_name("SCENE")
+      ->allow_extra_args(false);
   command
       ->add_option("--out,-o", options->out,
                    "folder for results.jsonl and suite.json (default: out/SUITE-TIME)")
@@ -153,13 +166,16 @@ void add_bench(CLI::App& app, int& status) {
       R"(The techniques run in turn (A B C A B C ...), so that a slow spell of the machine hits all of them; 'ratio' is the
 median of the ratios to the baseline in the same round. A technique that fails gives a row with its reason, the suite
 goes on, and the exit status is 1. Suites name scenes through $GNOMON_SCENES, too (see docs/reading-the-report.md).
+--compare also tells how many 95 % intervals of the ratios overlap with the earlier run's.
 
 Examples:
   gnomon bench demo
+  gnomon bench demo --scene my_scene.glb --images --out out/mine && gnomon report out/mine
   gnomon bench hard --out out/hard
   gnomon bench hard --out out/hard --resume        after an interruption
   gnomon bench hard --out out/hard-2 --shard 2/4
-  gnomon bench hard --compare out/hard/results.jsonl)");
+  gnomon bench hard --compare out/hard/results.jsonl
+tools/cluster drives shards over machines.)");
   command->callback([options, &status] { status = bench_command(*options); });
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "bench/rounds.h"
 #include "bench/statistics.h"
@@ -31,22 +32,35 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
   setting.lights = static_cast<uint32_t>(scene.lights.size());
   setting.map_faces = 0;
   for (const Light& light : scene.lights) setting.map_faces += light.type == LightType::point ? 6 : 1;
-  return compile(graph, setting, scene_facts(scene, camera, camera.aspect.value_or(double(size.width) / size.height), size.height));
+  return compile(
+      graph, setting,
+      scene_facts(scene, camera, camera.aspect.value_or(double(size.width) / size.height), size.height));
 }
 
-void print_passes(const Plan& plan) {
-  for (const PlanNode& node : plan.nodes) {
-    std::string folded;
-    for (const auto& [port, constant] : node.constant_inputs)
-      if (constant) folded += (folded.empty() ? "  constant: " : ", ") + port;
-    fmt::print("  kept      {:<20}{:<24}{}\n", node.id, node.type, folded);
+// A frame as it is, and one with everything kept.
+struct Measured {
+  std::string device;
+  double lean_ms = 0, full_ms = 0;                     // of a frame
+  std::map<std::string, double> lean_pass, full_pass;  // GPU ms of each pass, all of its turns and parts
+  MemoryUse lean_memory, full_memory;
+};
+
+// "refine.maps" is a part of the pass "refine".
+std::map<std::string, double> pass_times(const Samples& samples) {
+  std::map<std::string, std::vector<double>> frames;
+  for (const FrameTiming& frame : samples.isolated) {
+    std::map<std::string, double> sums;
+    for (const PassTiming& pass : frame.passes) sums[pass.id.substr(0, pass.id.find('.'))] += pass.gpu_ms;
+    for (const auto& [id, ms] : sums) frames[id].push_back(ms);
   }
-  for (const LeftOut& pass : plan.left_out)
-    fmt::print("  left out  {:<20}{:<24}{}\n", pass.id, pass.type, pass.reason);
+  std::map<std::string, double> medians;
+  for (const auto& [id, all] : frames) medians[id] = median(all);
+  return medians;
 }
 
-// Frames in turn with a run that keeps all; ms of a frame.
-void print_time_saved(const std::shared_ptr<const Scene>& scene, const Graph& graph, const Options& options) {
+// Frames in turn with a run that keeps all.
+Measured measure(const std::shared_ptr<const Scene>& scene, const Graph& graph, const Options& options,
+                 std::vector<LeftOutPass>& left_out) {
   const auto device = open_device(options.device);
   RenderSettings settings;
   const Extent size = parse_size(options.size);
@@ -61,15 +75,52 @@ void print_time_saved(const std::shared_ptr<const Scene>& scene, const Graph& gr
       run_rounds({lean_subject.get(), full_subject.get()}, {2, options.repeat, options.repeat});
   for (const Samples& one : samples)
     if (!one.error.empty()) fail(one.error);
-  const double lean_ms = median(samples[0].frame_ms()), full_ms = median(samples[1].frame_ms());
-  fmt::print("\ntime on {}: {:.3f} ms a frame, {:.3f} ms when nothing is left out: {:.3f} ms saved\n",
-             device_info(*device).name, lean_ms, full_ms, full_ms - lean_ms);
-  std::map<std::string, std::vector<double>> by_pass;
-  for (const FrameTiming& frame : samples[1].isolated)
-    for (const PassTiming& pass : frame.passes) by_pass[pass.id].push_back(pass.gpu_ms);
-  for (const LeftOutPass& pass : lean.left_out())
-    if (by_pass.count(pass.pass) != 0)
-      fmt::print("  {:<20}{:.3f} ms\n", pass.pass, median(by_pass[pass.pass]));
+  left_out = lean.left_out();
+  return {device_info(*device).name,
+          median(samples[0].frame_ms()),
+          median(samples[1].frame_ms()),
+          pass_times(samples[0]),
+          pass_times(samples[1]),
+          lean.memory(),
+          full.memory()};
+}
+
+std::string ms_or_nothing(const std::map<std::string, double>& times, const std::string& pass) {
+  const auto found = times.find(pass);
+  return found == times.end() ? "" : fmt::format("{:.3f}", found->second);
+}
+
+void print_pass(const std::string& id, const std::string& type, const std::string& state,
+                const std::string& why, const Measured* measured) {
+  std::string line = fmt::format("  {:<9} {:<12} {:<20}", state, id, type);
+  if (measured != nullptr)
+    line += fmt::format(" {:>10} {:>10}", ms_or_nothing(measured->lean_pass, id),
+                        ms_or_nothing(measured->full_pass, id));
+  fmt::print("{}{}{}\n", line, why.empty() ? "" : "  ", why);
+}
+
+void print_passes(const Plan& plan, const std::vector<LeftOutPass>& left_out, const Measured* measured) {
+  if (measured != nullptr) fmt::print("  {:<43} {:>10} {:>10}\n", "", "ms", "keeping all");
+  for (const PlanNode& node : plan.nodes) {
+    std::string folded;
+    for (const auto& [port, constant] : node.constant_inputs)
+      if (constant) folded += (folded.empty() ? "constant: " : ", ") + port;
+    print_pass(node.id, node.type, "kept", folded, measured);
+    for (const LeftOutPass& part : left_out)
+      if (part.pass == node.id && !part.part.empty())
+        fmt::print("            without {}: {}\n", part.part, part.reason);
+  }
+  for (const LeftOut& pass : plan.left_out) print_pass(pass.id, pass.type, "left out", pass.reason, measured);
+}
+
+void print_saved(const Measured& m) {
+  constexpr double kMebibyte = 1024.0 * 1024.0;
+  fmt::print("\na frame on {}: {:.3f} ms, keeping all {:.3f} ms: {:.3f} ms saved\n", m.device, m.lean_ms,
+             m.full_ms, m.full_ms - m.lean_ms);
+  const double lean = double(m.lean_memory.transient_bytes) / kMebibyte;
+  const double full = double(m.full_memory.transient_bytes) / kMebibyte;
+  fmt::print("memory of its images and buffers: {:.2f} MiB, keeping all {:.2f} MiB: {:.2f} MiB saved\n", lean,
+             full, full - lean);
 }
 
 void explain_command(const Options& options) {
@@ -79,12 +130,15 @@ void explain_command(const Options& options) {
   const auto scene = open_scene(options.scene);
   const Plan plan = plan_of(*scene, graph, options);
   fmt::print("{} on {}, {}\n", graph.name, scene->name, options.size);
-  print_passes(plan);
+  std::vector<LeftOutPass> left_out;
+  std::optional<Measured> measured;
+  if (options.repeat > 0) measured = measure(scene, graph, options, left_out);
+  print_passes(plan, left_out, measured ? &*measured : nullptr);
   if (options.plan) fmt::print("\n{}", to_text(plan));
-  if (plan.left_out.empty())
-    fmt::print("nothing is left out\n");
-  else if (options.repeat > 0)
-    print_time_saved(scene, graph, options);
+  if (measured)
+    print_saved(*measured);
+  else if (plan.left_out.empty())
+    fmt::print("no pass is left out\n");
 }
 
 }  // namespace
@@ -107,7 +161,10 @@ void add_explain(CLI::App& app, int& status) {
   command->add_option("--camera", options->camera, "index of the scene's camera")
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--repeat", options->repeat, "frames measured for the time saved; 0: do not measure")
+  command
+      ->add_option(
+          "--repeat", options->repeat,
+          "frames measured, in turn with a run that keeps all; 0: none, and only whole passes are told")
       ->type_name("N")
       ->capture_default_str();
   command->add_flag("--plan", options->plan,

@@ -1,6 +1,7 @@
 // Percentage-closer filtering (Reeves, Salesin and Cook 1987): the mean of the shadow tests around the receiver. Every tap is
 // tested against the receiver's plane there, so a wide kernel shows no moire on slopes.
 #include "shadow_query.glsl"
+#include "lib/min_max.glsl"
 #include "lib/vogel_disc.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -40,11 +41,32 @@ float filtered(Query query, ivec2 pixel) {
 #endif
 }
 
+#if USE_MIN_MAX == 1
+// Of the window around the receiver, a texel wider than the filter to each side.
+int plainly(Query query) {
+  ivec2 size = textureSize(shadow_map, 0).xy, texel = clamp(ivec2(floor(query.position)), ivec2(0), size - 1);
+  vec2 low = max(vec2(texel) - float(params.kernel / 2 + 1), vec2(0.0)) + 0.5;
+  vec2 high = min(vec2(texel) + float(params.kernel / 2 + 1), vec2(size - 1)) + 0.5;
+  vec4 corners = receiver_depths(faces[query.face], query.plane, vec4(low.x, high.x, high.x, low.x),
+                                 vec4(high.y, high.y, low.y, low.y), ENCODING == ENCODING_LINEAR);
+  return min_max_compare(min_max_of(corners), imageLoad(around, ivec3(texel / MIN_MAX_BLOCK, query.face)).xy);
+}
+#endif
+
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(at, imageSize(visibility).xy))) return;
   Query query;
   int state = make_query(at, query);
-  float v = clamp(filtered(query, at), 0.0, 1.0);
-  imageStore(visibility, ivec3(at, push.light), vec4(state == PIXEL_INSIDE ? v : unmapped_visibility(state)));
+  float v = unmapped_visibility(state);
+#if USE_MIN_MAX == 1
+  int plain = plainly(query);
+  // A loop of one turn or none, which costs nothing where no pixel of a group needs it.
+  for (bool mixed = state == PIXEL_INSIDE && plain == MIXED; mixed; mixed = false) v = clamp(filtered(query, at), 0.0, 1.0);
+  if (state == PIXEL_INSIDE && plain != MIXED) v = plain == PLAINLY_LIT ? 1.0 : 0.0;
+#else
+  float filtered_v = clamp(filtered(query, at), 0.0, 1.0);
+  if (state == PIXEL_INSIDE) v = filtered_v;
+#endif
+  imageStore(visibility, ivec3(at, push.light), vec4(v));
 }

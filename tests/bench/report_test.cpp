@@ -90,6 +90,37 @@ TEST(Report, FrontsSweepsAndFailuresOfAPlace) {
   EXPECT_NEAR(sweep["errors"]["rmse"]["exponent"].get<double>(), -1, 1e-9);
 }
 
+// The machine was half as quick when `late` was measured: its ratio to the baseline of its rounds is 2 all
+// the same, so that it stands at 20 ms and on the front, where its milliseconds would leave it behind
+// `early`.
+TEST(Report, SteadyTimeTakesOutTheMachinesDrift) {
+  json base = row("base", 512, 10, 0.3), early = row("early", 512, 25, 0.2, 2.5),
+       late = row("late", 512, 40, 0.1, 2);
+  base["ratio"] = {
+      {"median", 1.0}, {"mad", 0.0}, {"ci95", {1, 1}}, {"n", 7}, {"baseline", "base shadow_map=512"}};
+  early["ratio"]["baseline"] = late["ratio"]["baseline"] = "base shadow_map=512";
+  json lost = row("lost", 512, 5, 0.4, 3);
+  lost["ratio"]["baseline"] = "nobody";
+  const json report = report_of({base, early, late, lost});
+  EXPECT_EQ(report["rows"][0]["steady_ms"]["median"], 10);
+  EXPECT_DOUBLE_EQ(report["rows"][2]["steady_ms"]["median"].get<double>(), 20);
+  EXPECT_DOUBLE_EQ(report["rows"][2]["steady_ms"]["high"].get<double>(), 20.4);
+  EXPECT_EQ(report["rows"][3]["steady_ms"]["median"], 5);
+  EXPECT_EQ(report["places"][0]["fronts"]["rmse"], json({3, 0, 1, 2}));
+  EXPECT_EQ(report["places"][0]["steady_fronts"]["rmse"], json({3, 0, 2}));
+}
+
+TEST(Report, IntervalsOfTheErrorAreThoseOfTheRow) {
+  json one = row("pcf", 512, 10, 0.2);
+  one["error"]["ci95"] = {{"rmse", {0.15, 0.26}}, {"bias", {-0.3, 0.1}}};
+  const json errors = report_of({one})["rows"][0]["errors"];
+  EXPECT_EQ(errors["rmse"]["low"], 0.15);
+  EXPECT_EQ(errors["rmse"]["high"], 0.26);
+  EXPECT_EQ(errors["bias"]["low"], 0);  // its magnitude is shown
+  EXPECT_EQ(errors["bias"]["high"], 0.3);
+  EXPECT_EQ(errors["ssim"]["low"], errors["ssim"]["value"]);
+}
+
 TEST(Report, LessIsBetterInEveryErrorAndTurnsOfALoopAddUp) {
   const json report = report_of({row("pcf", 512, 10, 0.25)});
   const json& shown = report["rows"][0];

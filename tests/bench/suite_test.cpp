@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "engine/error.h"
 
@@ -158,6 +159,8 @@ TEST_F(SuiteTest, BadSuitesAreErrors) {
       R"({ "scenes": ["a.glb"], "graphs": ["shadow_mapping"], "baseline": "nobody" })",
       R"({ "scenes": ["a.glb"], "graphs": ["shadow_mapping"], "schema": 2 })",
       R"({ "scenes": ["a.glb"], "graphs": ["shadow_mapping"], "reference": 5 })",
+      R"({ "scenes": ["a.glb"], "graphs": ["shadow_mapping"], "seconds": -1 })",
+      R"({ "scenes": ["a.glb"], "graphs": ["shadow_mapping"], "least": 0 })",
       R"({ "scenes": ["a.glb"], "graphs": ["shadow_mapping"], "graphs": ["shadow_mapping"] })",
       R"({ "scenes": ["$GNOMON_SCENES/*.glb"], "graphs": ["shadow_mapping"] })",
   };
@@ -170,6 +173,33 @@ TEST_F(SuiteTest, ShippedSuitesAreRight) {
     EXPECT_FALSE(suite.scenes.empty()) << name;
     EXPECT_EQ(suite.baseline, "shadow_mapping") << name;
   }
+}
+
+TEST_F(SuiteTest, TheFullSuiteHoldsEveryTechniqueAtThreeMapSizesOnSixScenes) {
+  const Suite suite = load_suite(find_suite("full"));
+  EXPECT_EQ(suite.scenes.size(), 6u);
+  EXPECT_GT(suite.seconds, 0);
+  for (const fs::path& file : all_graphs()) {
+    std::set<std::int64_t> maps;
+    size_t rows = 0;
+    for (const SuiteConfig& config : suite.configs) {
+      if (config.graph.name != file.stem()) continue;
+      ++rows;
+      const auto map = config.graph.vars.find("shadow_map");
+      if (map != config.graph.vars.end()) maps.insert(std::get<std::int64_t>(map->second));
+    }
+    const bool has_map = load_graph(file).vars.count("shadow_map") != 0;
+    EXPECT_EQ(rows, has_map ? 3u : 1u) << file;
+    EXPECT_EQ(maps, has_map ? (std::set<std::int64_t>{512, 1024, 2048}) : std::set<std::int64_t>{}) << file;
+  }
+}
+
+TEST_F(SuiteTest, ALimitOfTimeIsRead) {
+  const std::string text =
+      R"({ "scenes": ["a.glb"], "graphs": ["shadow_mapping"], "seconds": 1.5, "least": 3 })";
+  const Suite suite = parse(text);
+  EXPECT_EQ(suite.seconds, 1.5);
+  EXPECT_EQ(suite.least, 3u);
 }
 
 TEST_F(SuiteTest, MissingFileIsNamed) {

@@ -232,6 +232,25 @@ TEST(LeavingOut, ChannelsThatNobodyReads) {
   EXPECT_LT(lean.memory().transient_bytes_without_aliasing, full.memory().transient_bytes_without_aliasing);
 }
 
+// Receivers that a min-max map shows to be all lit or all in umbra are not filtered.
+TEST(LeavingOut, WindowsThatTheMinMaxMapDecides) {
+  Light below = spot();
+  below.world_from_light = analytic::frame({-3, 4, 2}, {0, 0, 0}, {0, 0, 1});
+  for (const Light& light : {spot(), below, analytic::light(LightType::point, {1, 5, 1})})
+    for (const char* sampling : {"box", "smooth_box", "vogel"})
+      for (const int64_t kernel : {1, 7, 31, 63}) {
+        const Scene scene = analytic::square_over_plane(light);
+        const auto with = [&](bool min_max) {
+          return show("pcf", scene, false,
+                      {{"min_max", min_max},
+                       {"kernel", kernel},
+                       {"sampling", std::string(sampling)},
+                       {"shadow_map", int64_t{250}}});
+        };
+        EXPECT_EQ(largest_difference(with(true).visibility, with(false).visibility), 0) << sampling << kernel;
+      }
+}
+
 TEST(LeavingOut, FiltersNarrowerThanAPixel) {
   for (const char* graph : {"edtsm", "edtsm_bilateral"}) {
     const Scene scene = analytic::square_over_plane(spot());

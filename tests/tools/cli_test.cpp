@@ -132,6 +132,7 @@ const std::vector<BadInput>& bad_inputs() {
       {"bench torn.json --out out", {"torn.json"}},
       {"bench demo --shard 3/2 --out out", {"3/2"}},
       {"bench demo --shard 1 --out out", {"--shard"}},
+      {"bench demo --scene nowhere --out out", {"no such scene file", "nowhere"}},
       {"bench demo --resume --overwrite --out out", {"--overwrite"}},
       {"explain absent.glb --graph shadow_mapping", {"absent.glb"}},
       {"explain fence --graph shadow_mapping --size nothing", {"nothing"}},

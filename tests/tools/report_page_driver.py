@@ -38,12 +38,32 @@ def technique_column(driver, column):
 def switch_metric(driver):
     errors = technique_column(driver, 1)
     expect(errors.get("exact") == "0.01" and errors.get("quick (baseline)") == "0.2", f"rmse column is {errors}")
-    expect(technique_column(driver, 6).get("bad") == "", "a dominated row is on the front")
+    expect(technique_column(driver, 7).get("bad") == "", "a dominated row is on the front")
     Select(driver.find_element(By.ID, "metric")).select_by_value("misclassified")
     errors = technique_column(driver, 1)
     expect(errors.get("exact") == "0", f"misclassified column is {errors}")
     title = driver.execute_script("return report.charts[0].scatter.options.scales.y.title.text")
     expect(title == "misclassified", f"the chart's axis says {title}")
+
+
+def ask_for_a_budget(driver):
+    answer = lambda: driver.find_element(By.CSS_SELECTOR, "#place-0 .answer").text
+    expect(answer().startswith("Least error: exact, rmse 0.01 in 50 ms"), f"without a budget: {answer()}")
+    budget = driver.find_element(By.ID, "budget")
+    budget.send_keys("30")
+    expect(answer() == "Least error within 30 ms: quick shadow_map=1024, rmse 0.1 in 20 ms.", f"in 30 ms: {answer()}")
+    # The interval of 20 ms as measured ends at 22, that of the ratio at 20.
+    budget.clear()
+    budget.send_keys("21")
+    Select(driver.find_element(By.ID, "time")).select_by_value("ms")
+    expect("quick, rmse 0.2" in answer(), f"as measured in 21 ms: {answer()}")
+    Select(driver.find_element(By.ID, "time")).select_by_value("steady_ms")
+    expect("shadow_map=1024" in answer(), f"without drift in 21 ms: {answer()}")
+    budget.clear()
+    budget.send_keys("1")
+    expect(answer().startswith("Nothing within 1 ms"), f"in 1 ms: {answer()}")
+    budget.clear()
+    budget.send_keys(Keys.BACKSPACE)
 
 
 def read_a_point(driver):
@@ -75,6 +95,7 @@ def main():
     try:
         driver.get(pathlib.Path(sys.argv[1]).absolute().as_uri())
         expect(driver.find_element(By.ID, "summary").text.startswith("4 measurements"), "no summary")
+        ask_for_a_budget(driver)
         switch_metric(driver)
         read_a_point(driver)
         move_slider(driver)

@@ -28,6 +28,34 @@ const intervalMarks = {
   },
 };
 
+// A vertical line at chart.options.budget milliseconds.
+const budgetLine = {
+  id: 'budgetLine',
+  beforeDatasetsDraw(chart) {
+    const {ctx, chartArea, options: {budget}, scales: {x}} = chart;
+    if (!(budget >= x.min && budget <= x.max)) return;
+    const at = x.getPixelForValue(budget);
+    ctx.save();
+    ctx.fillStyle = 'rgba(11, 98, 176, 0.07)';
+    ctx.fillRect(chartArea.left, chartArea.top, at - chartArea.left, chartArea.height);
+    ctx.strokeStyle = '#0b62b0';
+    ctx.beginPath();
+    ctx.moveTo(at, chartArea.top);
+    ctx.lineTo(at, chartArea.bottom);
+    ctx.stroke();
+    ctx.restore();
+  },
+};
+
+// "pcf kernel=15 shadow_map=512" in lines of at most `length` characters, where it can be broken.
+function lines(text, length) {
+  const made = [];
+  for (const word of text.split(' '))
+    if (made.length && made[made.length - 1].length + 1 + word.length <= length) made[made.length - 1] += ` ${word}`;
+    else made.push(word);
+  return made;
+}
+
 // Writes `point.name` beside points, where there is room and no other name.
 const pointNames = {
   id: 'pointNames',
@@ -77,7 +105,8 @@ function logAxis(title) {
       maxRotation: 0,
       autoSkip: true,
       callback(value) {
-        const digit = Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
+        const leading = value / 10 ** Math.floor(Math.log10(value) + 1e-9), digit = Math.round(leading);
+        if (Math.abs(leading - digit) > 1e-6) return null;  // the axis' end, which is no round number
         const narrow = this.max < 10 * this.min;  // less than a decade: every digit
         return narrow || [1, 2, 5, 10].includes(digit) ? figure(value) : null;
       },
