@@ -32,6 +32,7 @@ struct LightState {
   uint32_t rendered = 0;           // samples whose maps have been rendered
   bool needed = true;              // some caster's shadow can be in view
   bool area = false;               // wide enough for penumbrae
+  bool holds_all = false;          // capacity for all samples that there can be
   bool full = false;               // a quad stayed whole because memory for samples ran out
 };
 
@@ -170,6 +171,7 @@ class AreaRefine : public Pass {
     for (uint32_t i = 0; i < lights_.size(); ++i) {
       lights_[i].first = first;
       lights_[i].capacity = lights_[i].area ? std::min(share * kWordSamples, most) : 1;
+      lights_[i].holds_all = lights_[i].capacity == most;
       first += divide_up(lights_[i].capacity, kWordSamples) * kWordSamples;
     }
   }
@@ -298,10 +300,10 @@ class AreaRefine : public Pass {
     uint32_t room = light.capacity - uint32_t(light.tree->samples().size());
     constexpr uint32_t kMostNew = 5;  // samples that dividing a quad makes
     for (size_t i = 0; i < light.tree->questions().size(); ++i, ++next) {
-      const bool fits = room >= kMostNew;
+      const bool fits = light.holds_all || room >= kMostNew;
       light.full = light.full || (banding[next] && !fits);
       divide.push_back(banding[next] && fits);
-      if (divide.back()) room -= kMostNew;
+      if (divide.back()) room -= std::min(room, kMostNew);
     }
     return divide;
   }

@@ -9,7 +9,7 @@ class Compose : public Pass {
   void declare(Declaration& d) const override {
     d.summary("Shades the G-buffer with all lights and their visibility.");
     d.cite("Lambert; light falloff as in glTF's KHR_lights_punctual");
-    d.input("visibility", Access::sampled, true, "a layer a light");
+    d.optional_input("visibility", Access::sampled, true, "a layer a light; without it nothing is shadowed");
     const ImageShape depth = d.input("depth", Access::sampled, false, "the camera's device depth");
     d.input("normal", Access::sampled, false, "octahedral shading normal");
     d.input("albedo", Access::sampled, false, "base colour");

@@ -113,6 +113,18 @@ void warn_about_light(Environment& e, const Light& light) {
                     light.name, caster->name));
 }
 
+// engine/light_faces.cpp lets no perspective range be wider.
+constexpr double widest_range = 1e4 * (1 - 1e-9);  // far / near
+
+void warn_about_range(Environment& e) {
+  for (const LightFace& face : e.gpu_scene().faces()) {
+    if (face.orthographic || face.far < widest_range * face.near) continue;
+    e.warn(fmt::format("what is nearer to light '{}' than {:.3g} is not in its map",
+                       e.scene().lights[face.light].name, face.near));
+    return;
+  }
+}
+
 }  // namespace
 
 void warn_about_maps(Environment& e, uint32_t side) {
@@ -122,6 +134,7 @@ void warn_about_maps(Environment& e, uint32_t side) {
   else if (side < least_texels * pixels)
     e.warn(fmt::format("a map of {} texels a side is coarse for an image of {} pixels", side, pixels));
   for (const Light& light : e.scene().lights) warn_about_light(e, light);
+  warn_about_range(e);
 }
 
 void warn_about_kernel(Environment& e, uint32_t side) {

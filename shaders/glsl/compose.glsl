@@ -24,7 +24,11 @@ void main() {
   vec3 p = relative_position(at, device_depth);
   vec3 n = octahedral_decode(normal_at(at).xy);
   vec3 sum = vec3(0.0);
+#ifdef HAS_VISIBILITY
   for (int i = 0; i < LIGHT_COUNT; ++i) sum += visibility_at(at, i).x * irradiance(lights[i], p, n);
+#else
+  for (int i = 0; i < LIGHT_COUNT; ++i) sum += irradiance(lights[i], p, n);
+#endif
   vec3 radiance = is_background(device_depth) ? vec3(0.0) : albedo_at(at).rgb / PI * sum;
   imageStore(color, at, vec4(radiance, 1.0));
 }

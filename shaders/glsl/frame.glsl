@@ -99,6 +99,13 @@ bool in_range(Light light, vec3 p) {
   return range == 0.0 || light.position.w == LIGHT_DIRECTIONAL || dot(d, d) <= range * range;
 }
 
+// Does the light's shadow map hold `p`? Beyond it nobody knows of shadows.
+bool in_map(Light light, vec3 p) {
+  if (light.faces.y != 1) return true;  // a point light's faces see everything
+  LightFace face = faces[light.faces.x];
+  return face_sees(face_project(face, face_space(face, vec4(p, 1.0))));
+}
+
 // The face of the shadow map that sees `p`: of a point light, the one of its major axis (+x -x +y -y +z -z).
 uint face_of(Light light, vec3 p) {
   if (light.faces.y == 1) return light.faces.x;

@@ -8,7 +8,7 @@
 struct Receiving {
   vec3 position, normal;  // relative; geometric
   float depth;            // along the view axis, world units
-  bool receives;          // geometry that faces the light: the shadow map decides
+  bool receives;          // geometry in the map that faces the light: the shadow map decides
 };
 
 // `encoded`: octahedral geometric normal.
@@ -17,7 +17,7 @@ Receiving make_receiving(ivec2 pixel, float device_depth, vec2 encoded, int ligh
   r.position = relative_position(pixel, device_depth);
   r.normal = octahedral_decode(encoded);
   r.depth = view_depth(device_depth);
-  r.receives = !is_background(device_depth) && faces_light(lights[light], r.position, r.normal);
+  r.receives = !is_background(device_depth) && faces_light(lights[light], r.position, r.normal) && in_map(lights[light], r.position);
   return r;
 }
 
