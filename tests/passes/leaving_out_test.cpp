@@ -1,0 +1,106 @@
+// What the compiler leaves out of the shipped graphs, without a device.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/compile.h"
+#include "engine/graph_shadowless.h"
+
+namespace gnomon {
+namespace {
+
+SceneFacts facts(const std::string& shadowless) {
+  SceneFacts facts;
+  facts.lights = 1;
+  facts.shadowless = {shadowless};
+  facts.light_moves = {false};
+  facts.light_size = {0};
+  facts.penumbra = {0};
+  return facts;
+}
+
+Plan plan_of(const std::string& graph, const Values& set, const SceneFacts& facts,
+             const CompileOptions& options = {}) {
+  return compile(load_graph(find_graph(graph), set), {}, facts, options);
+}
+
+const PlanNode& node_of(const Plan& plan, const std::string& id) {
+  return *std::find_if(plan.nodes.begin(), plan.nodes.end(), [&](const PlanNode& n) { return n.id == id; });
+}
+
+std::vector<std::string> ids_of(const Plan& plan) {
+  std::vector<std::string> ids;
+  for (const PlanNode& node : plan.nodes) ids.push_back(node.id);
+  return ids;
+}
+
+TEST(WithoutShadows, VisibilityComesFromTheGBufferAlone) {
+  const Graph graph = *without_shadows(load_graph(find_graph("edtsm")));
+  EXPECT_EQ(graph.outputs.at("visibility"), (PortRef{"unshadowed", "visibility"}));
+  EXPECT_EQ(graph.nodes.back().in.at("visibility"), (PortRef{"unshadowed", "visibility"}));
+  EXPECT_EQ(graph.nodes[1].type, "unshadowed");
+}
+
+TEST(WithoutShadows, OnlyOfGraphsThatHaveWhatItTakes) {
+  Graph graph = load_graph(find_graph("pcf"));
+  Graph blind = graph;
+  blind.outputs.erase("visibility");
+  EXPECT_FALSE(without_shadows(blind));
+  graph.nodes[1].id = "unshadowed";
+  EXPECT_EQ(without_shadows(graph)->outputs.at("visibility").node, "unshadowed_");
+  graph.nodes.erase(graph.nodes.begin());
+  EXPECT_FALSE(without_shadows(graph));
+}
+
+TEST(LeftOutOfThePlan, ATechniqueWhoseShadowsNobodySees) {
+  const Plan plan = plan_of("edtsm", {}, facts("far away"));
+  EXPECT_EQ(ids_of(plan), (std::vector<std::string>{"gbuffer", "unshadowed", "shade"}));
+  ASSERT_EQ(plan.left_out.size(), 5u);
+  for (const LeftOut& pass : plan.left_out) EXPECT_EQ(pass.reason, "far away");
+  CompileOptions keep;
+  keep.keep_all = true;
+  EXPECT_EQ(plan_of("edtsm", {}, facts("far away"), keep).nodes.size(), 7u);
+}
+
+// What is captured runs all the same, and nothing else does.
+TEST(LeftOutOfThePlan, NotWhatIsCaptured) {
+  CompileOptions options;
+  options.captures = {"map.depth"};
+  EXPECT_EQ(ids_of(plan_of("edtsm", {}, facts("far away"), options)),
+            (std::vector<std::string>{"gbuffer", "unshadowed", "map", "shade"}));
+}
+
+// Moments darken slopes by themselves; that a light shines elsewhere is no error of theirs.
+TEST(LeftOutOfThePlan, ATechniquesOwnErrorsStay) {
+  EXPECT_GT(plan_of("vsm", {}, facts(SceneFacts::no_caster)).nodes.size(), 3u);
+  EXPECT_EQ(plan_of("vsm", {}, facts("out of range")).nodes.size(), 3u);
+}
+
+TEST(LeftOutOfThePlan, HowFarReadersReachAroundAReceiver) {
+  const auto reach = [](const std::string& graph, const Values& set, const CompileOptions& options = {}) {
+    return node_of(plan_of(graph, set, facts(""), options), "map").reach.at("depth");
+  };
+  EXPECT_EQ(reach("shadow_mapping", {}), 1u);
+  EXPECT_EQ(reach("pcf", {{"kernel", int64_t{15}}}), 15u / 2 + 2);
+  EXPECT_EQ(reach("vsm", {{"kernel", int64_t{31}}}), 31u / 2 + 2);  // the filter's, and the test's own
+  EXPECT_EQ(reach("vsm", {{"mip_maps", true}}), std::nullopt);
+  CompileOptions options;
+  options.captures = {"map.depth"};
+  EXPECT_EQ(reach("pcf", {}, options), std::nullopt) << "somebody looks at it";
+  options = {};
+  options.keep_all = true;
+  EXPECT_EQ(reach("pcf", {}, options), std::nullopt);
+}
+
+TEST(LeftOutOfThePlan, ChannelsThatNobodyReads) {
+  Graph graph = load_graph(find_graph("pcf"));
+  graph.outputs.erase("color");
+  const Plan plan = compile(graph, {}, facts(""));
+  const PlanNode& gbuffer = node_of(plan, "gbuffer");
+  EXPECT_TRUE(gbuffer.resources.contains("geometric"));
+  EXPECT_FALSE(gbuffer.resources.contains("albedo"));
+  EXPECT_FALSE(gbuffer.resources.contains("normal"));
+}
+
+}  // namespace
+}  // namespace gnomon
