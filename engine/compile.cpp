@@ -54,7 +54,7 @@ class Compiler {
   void leave_technique_out(const Declaration::Setting& setting) {
     const std::string why = facts_.no_shadow();
     if (options_.keep_all || why.empty()) return;
-    const std::optional<Graph> without = without_shadows(graph_);
+    const std::optional<Graph> without = without_shadows(graph_, setting.lights);
     if (!without) return;
     Problems problems;
     auto shadowless = std::make_unique<Graph>(*without);

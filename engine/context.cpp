@@ -36,7 +36,8 @@ VkImageLayout layout_of(const PlanNode& node, const std::string& name, VkFormat 
   return use_of(port->access, node.declaration.kind(), false, format).layout;
 }
 
-VkImageView target_view(const GpuImage& image, const Targets& targets) {
+VkImageView target_view(const GpuImage& image, const Targets& targets, std::optional<uint32_t> own = {}) {
+  if (own) return image.view(VK_IMAGE_VIEW_TYPE_2D, *own, 1, 0, 1, image.aspect());
   if (!targets.layer) return image.attachment_view();
   const uint32_t first = std::min(*targets.layer, image.shape().layers - 1);
   const VkImageViewType type = targets.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
@@ -222,8 +223,9 @@ void Context::render(const Targets& targets, const std::function<void()>& body) 
   for (const ColorTarget& target : targets.colors) {
     const GpuImage& image = physical(target.port).image;
     note(image);
-    auto info = attachment(target_view(image, targets), layout_of(node_, target.port, image.shape().format),
-                           target.clear.has_value());
+    if (target.layer) layers = 1;
+    auto info = attachment(target_view(image, targets, target.layer),
+                           layout_of(node_, target.port, image.shape().format), target.clear.has_value());
     if (target.clear) std::copy(target.clear->begin(), target.clear->end(), info.clearValue.color.float32);
     colors.push_back(info);
   }

@@ -82,7 +82,8 @@ class Environment {
 
 struct ColorTarget {
   std::string port;
-  std::optional<std::array<float, 4>> clear;  // absent: keep what is there
+  std::optional<std::array<float, 4>> clear;     // absent: keep what is there
+  std::optional<uint32_t> layer = std::nullopt;  // this one alone, whatever Targets::layer says
 };
 struct DepthTarget {
   std::string port;

@@ -5,7 +5,8 @@
 namespace gnomon {
 namespace {
 
-constexpr const char* kType = "unshadowed";
+constexpr const char* kType = "unshadowed";  // of the pass; the G-buffer's channel and parameter
+constexpr uint32_t kMostInGBuffer = 4;       // lights: colour attachments beside the other channels
 
 void redirect(std::vector<GraphNode>& nodes, const PortRef& from, const PortRef& to) {
   for (GraphNode& node : nodes) {
@@ -26,26 +27,36 @@ std::string free_id(const Graph& graph) {
   return id;
 }
 
-}  // namespace
-
-std::optional<Graph> without_shadows(const Graph& graph) {
-  const auto output = graph.outputs.find("visibility");
-  const auto gbuffer = std::find_if(graph.nodes.begin(), graph.nodes.end(),
-                                    [](const GraphNode& node) { return node.type == "gbuffer"; });
-  if (output == graph.outputs.end() || gbuffer == graph.nodes.end()) return std::nullopt;
-  Graph result = graph;
+PortRef add_pass(Graph& graph, std::vector<GraphNode>::iterator gbuffer) {
   GraphNode node;
   node.id = free_id(graph);
   node.type = kType;
   node.place = "/outputs/visibility";
   node.in["depth"] = {gbuffer->id, "depth"};
   node.in["geometric"] = {gbuffer->id, "geometric"};
-  const PortRef shown = output->second, instead{node.id, "visibility"};
+  const PortRef visibility{node.id, "visibility"};
+  graph.nodes.insert(gbuffer + 1, std::move(node));
+  return visibility;
+}
+
+}  // namespace
+
+std::optional<Graph> without_shadows(const Graph& graph, uint32_t lights) {
+  const auto output = graph.outputs.find("visibility");
+  const auto found = std::find_if(graph.nodes.begin(), graph.nodes.end(),
+                                  [](const GraphNode& node) { return node.type == "gbuffer"; });
+  if (output == graph.outputs.end() || found == graph.nodes.end()) return std::nullopt;
+  Graph result = graph;
+  const auto gbuffer = result.nodes.begin() + (found - graph.nodes.begin());
+  PortRef instead{gbuffer->id, kType};
+  if (lights <= kMostInGBuffer)
+    gbuffer->params[kType] = true;
+  else
+    instead = add_pass(result, gbuffer);
+  const PortRef shown = output->second;
   redirect(result.nodes, shown, instead);
   for (auto& [name, ref] : result.outputs)
     if (ref == shown) ref = instead;
-  const auto after = result.nodes.begin() + (gbuffer - graph.nodes.begin()) + 1;
-  result.nodes.insert(after, std::move(node));
   return result;
 }
 

@@ -6,6 +6,8 @@
 namespace gnomon {
 namespace {
 
+constexpr double widest_penumbra = 0.05;  // of the scene's diagonal
+
 class DistancePenumbra : public Pass {
  public:
   void declare(Declaration& d) const override {
@@ -33,6 +35,9 @@ class DistancePenumbra : public Pass {
     // Not zero: the penumbra of a width that no pixel sees is a step.
     width_ = std::max(float(penumbra_width(e.scene(), e.params())), std::numeric_limits<float>::min());
     e.fact("penumbra_world", width_);
+    const double diagonal = 2.0 * e.scene().bounds.radius();
+    if (e.params().choice("metric") == "world" && width_ > widest_penumbra * diagonal)
+      e.warn("a penumbra this wide, more than a twentieth of the scene's diagonal, dissolves shadows");
   }
   void record(Context& c) override {
     c.bind(shade_);

@@ -19,6 +19,9 @@ class GBuffer : public Pass {
              "octahedral normal of the triangle, turned to the camera on double-sided meshes");
     d.output("albedo", Access::color, false, {size, 1, 1, VK_FORMAT_R8G8B8A8_SRGB}, "base colour");
     for (const Channel& channel : kChannels) d.omit_unread(channel.port);
+    if (d.flag("unshadowed", false, "also write the visibility of a scene without casters"))
+      d.output("unshadowed", Access::color, true, {size, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT},
+               "0 facing away from the light, else 1; a layer a light");
   }
 
   void prepare(Environment& e) override {
@@ -60,6 +63,13 @@ class GBuffer : public Pass {
       state.defines.emplace_back(channel.define, std::to_string(channels_.size()));
       state.colors.push_back(channel.format);
       channels_.push_back({channel.port, kNothing});
+    }
+    if (!e.params().flag("unshadowed")) return;
+    state.defines.emplace_back("UNSHADOWED_LOCATION", std::to_string(channels_.size()));
+    constexpr std::array<float, 4> kLit{1, 1, 1, 1};
+    for (uint32_t light = 0; light < e.shape("unshadowed").layers; ++light) {
+      state.colors.push_back(VK_FORMAT_R32_SFLOAT);
+      channels_.push_back({"unshadowed", kLit, light});
     }
   }
 

@@ -1,7 +1,9 @@
 #include "passes/strip_filter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/glm.hpp>
+#include <string>
 
 #include "passes/divide_up.h"
 
@@ -80,6 +82,20 @@ Need StripFilter::need(const SceneFacts& facts, const Params& params) const {
   return Need::bypass("visibility", "visibility", "the filter is nowhere wider than a pixel");
 }
 
+namespace {
+
+constexpr double most_of_image = 0.25;  // share of the image's smaller side that the filter may be wide
+
+void warn_about_width(Environment& e) {
+  const double width = e.params().number("width");
+  const uint32_t side = std::min(e.settings().width, e.settings().height);
+  if (width > 1 && width > most_of_image * side)
+    e.warn("a filter of " + std::to_string(std::lround(width)) + " pixels is wide for an image of " +
+           std::to_string(side));
+}
+
+}  // namespace
+
 void StripFilter::prepare(Environment& e) {
   tiled_ = e.connected("tiles") && e.connected("arguments");
   classify_ = e.compute(tiled_ ? "strip_filter_tiles.glsl" : "strip_filter_classify.glsl");
@@ -87,6 +103,7 @@ void StripFilter::prepare(Environment& e) {
   list_x_ = e.compute("strip_filter_list_x.glsl");
   along_x_ = e.compute(shader_);
   along_y_ = e.compute(shader_, {{"ALONG_Y_AXIS", "1"}});
+  warn_about_width(e);
   const double given = e.params().number("reference_depth");
   reference_depth_ = float(given > 0 ? given : e.scene_facts().middle_depth);
   e.fact("reference_depth", reference_depth_);

@@ -145,6 +145,13 @@ void print_passes(const json& run) {
   }
 }
 
+// A pass, or a part of one that runs.
+void print_left_out(const json& one) {
+  const auto part = one["part"].get<std::string>();
+  fmt::print("  left out: {}{}{}: {}\n", one["pass"].get<std::string>(), part.empty() ? "" : ", ", part,
+             one["reason"].get<std::string>());
+}
+
 void print_error(const json& error) {
   if (!error.is_object()) return;
   const auto share = [&](const char* name) {
@@ -177,7 +184,7 @@ void print_run(const Job& job, const json& run) {
              frame["ci95"][1].get<double>(), run["record_ms"]["median"].get<double>());
   print_passes(run);
   for (const json& pass : run["left_out"])
-    fmt::print("  left out: {}: {}\n", pass["pass"].get<std::string>(), pass["reason"].get<std::string>());
+    print_left_out(pass);
   print_error(run["error"]);
   if (run.contains("sequence")) print_sequence(run["sequence"]);
 }

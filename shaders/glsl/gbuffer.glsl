@@ -1,6 +1,7 @@
 // G-buffer (Saito and Takahashi 1990): octahedral shading and geometric normals, albedo; depth is fixed-function.
 #include "frame.glsl"
 #include "lib/octahedral.glsl"
+#include "pixel_state.glsl"
 
 layout(push_constant) uniform Push { uint instance, material; } push;
 layout(set = 2, binding = 0) uniform sampler2D base_color_texture;
@@ -17,6 +18,10 @@ layout(location = GEOMETRIC) out vec2 out_geometric;
 #endif
 #ifdef ALBEDO
 layout(location = ALBEDO) out vec4 out_albedo;
+#endif
+
+#ifdef UNSHADOWED_LOCATION
+layout(location = UNSHADOWED_LOCATION) out float out_unshadowed[LIGHT_COUNT];
 #endif
 
 // From the triangle itself, not from screen derivatives: exact at silhouettes and on slivers.
@@ -46,5 +51,9 @@ void main() {
 #endif
 #ifdef ALBEDO
   out_albedo = vec4(color.rgb, 1.0);
+#endif
+#ifdef UNSHADOWED_LOCATION
+  for (int i = 0; i < LIGHT_COUNT; ++i)
+    out_unshadowed[i] = unmapped_visibility(faces_light(lights[i], in_relative, geometric) ? PIXEL_OUTSIDE : PIXEL_AWAY);
 #endif
 }

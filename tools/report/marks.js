@@ -97,6 +97,12 @@ function floorOf(values) {
   return positive.length ? Math.min(...positive) / 3 : 1e-6;
 }
 
+// {min, max}: the powers of ten, or twice or five times them, around positive numbers.
+function roundLimits(low, high) {
+  const steps = (number) => [1, 2, 5, 10].map((digit) => digit * 10 ** Math.floor(Math.log10(number)));
+  return {min: steps(low).filter((step) => step <= low).pop(), max: steps(high).find((step) => step >= high)};
+}
+
 function logAxis(title) {
   return {
     type: 'logarithmic',

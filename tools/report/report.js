@@ -231,7 +231,7 @@ class Report {
 
   chooseScene() {
     const sweeps = this.report.sweeps.filter((sweep) => sweep.scene === this.get('sweep-scene').value);
-    const count = (name) => sweeps.filter((sweep) => sweep.parameter === name).length;
+    const count = (name) => sweeps.filter((sweep) => sweep.parameter === name).reduce((sum, sweep) => sum + sweep.x.length, 0);
     const names = [...new Set(sweeps.map((sweep) => sweep.parameter))].sort((a, b) => count(b) - count(a));
     fillSelect(this.get('sweep-parameter'), names.map((name) => [name, name.replace('_', ' ')]), this.get('sweep-parameter').value);
     this.drawSweeps();
@@ -251,6 +251,11 @@ class Report {
         data: sweep.rows.map((id, i) => ({x: sweep.x[i], y: Math.max(value(rows[id]), floor), shown: value(rows[id]),
               yLow: (interval(rows[id]) || {}).low, yHigh: (interval(rows[id]) || {}).high}))
             .filter((point) => point.shown !== undefined)}));
+      const shown = chart.data.datasets.flatMap((dataset) => dataset.data);
+      if (shown.length)
+        Object.assign(chart.options.scales.y, roundLimits(
+            Math.min(...shown.map((p) => p.yLow > 0 ? Math.min(p.yLow, p.y) : p.y)),
+            Math.max(...shown.map((p) => Math.max(p.yHigh ?? p.y, p.y)))));
       chart.options.scales.x.title.text = parameter.replace('_', ' ');
       chart.options.scales.y.title.text = title;
       chart.update();
