@@ -103,8 +103,8 @@ std::vector<StabilityAxis> make_axes() {
                                {"1", "5", "20", "42", "60", "88", "100", "200", "1000"}, {"200"},
                                {"exponent"}, {{"precision", std::string("single")}}));
   axes.push_back(variable_axis("exponent_half", "1", "of exponential filters, in half precision",
-                               {"1", "5", "8", "11", "20", "42", "88"}, {"20"}, {"exponent"},
-                               {{"precision", std::string("half")}}));
+                               {"1", "5", "8", "11", "20", "42", "88"}, {"20"},
+                               {"exponent", "negative_exponent"}, {{"precision", std::string("half")}}));
   axes.push_back(scene_axis("flat", "1",
                             "1: a floor alone below a directional light: one depth in all of the map", {"1"},
                             {"1"}, &S::flat, 0, 1));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double margin = 0.01;  // of near and far, and of an orthographic map's half width
 // Of far. Perspective depth tells far distances apart by 6e-8 / smallest_near of them: a texel of a map of
-// 4096 a side. Nearer casters are not in the map.
+// 4096 a side. Nearer casters are drawn as if they were there.
 constexpr double smallest_near = 1e-4;
 constexpr double smallest_depth = 1e-9;  // of the scene's radius: nothing nearer to the light counts
 

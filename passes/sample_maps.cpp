@@ -72,6 +72,7 @@ void SampleMaps::prepare(Environment& e, uint32_t capacity, bool split) {
   state.vertex = "sample_maps.vert.glsl";
   state.depth = VK_FORMAT_D32_SFLOAT;
   state.depth_test = state.depth_write = true;
+  state.depth_clamp = true;  // what is nearer than the face's range casts its shadow all the same
   state.depth_compare = VK_COMPARE_OP_LESS;
   if (split) state.defines.emplace_back("SPLIT_MOVING", "1");
   pipelines_.opaque = e.raster(state);

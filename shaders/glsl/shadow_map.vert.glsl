@@ -3,6 +3,7 @@
 
 layout(push_constant) uniform Push { uint instance; } push;
 layout(location = 0) in vec3 in_position;
+invariant gl_Position;  // the same depth with and without what masked materials need
 #ifdef MASKED
 layout(location = 2) in vec2 in_uv;
 layout(location = 3) in vec4 in_color;

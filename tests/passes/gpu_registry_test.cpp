@@ -79,11 +79,14 @@ bool same(const Outputs& a, const Outputs& b) {
   return true;
 }
 
+// Above 1 relative to the value, as half floats round.
 double largest_difference(const Outputs& a, const Outputs& b) {
   double most = 0;
   for (const auto& [name, image] : a)
-    for (size_t i = 0; i < image.data.size(); ++i)
-      most = std::max(most, std::abs(double(image.data[i]) - double(b.at(name).data[i])));
+    for (size_t i = 0; i < image.data.size(); ++i) {
+      const double one = image.data[i], other = b.at(name).data[i];
+      most = std::max(most, std::abs(one - other) / std::max(1.0, std::abs(one)));
+    }
   return most;
 }
 
