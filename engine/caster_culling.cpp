@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace gnomon {
 namespace {
@@ -65,10 +66,10 @@ bool inside_face(const LightFace& face, const Corners& corners, const glm::dvec3
   return std::find(outside.begin(), outside.end(), 8) == outside.end();
 }
 
-// World units that `reach` texels of a face span at most.
+// World units that `reach` texels of a face along both axes span at most.
 double reach_world(const LightFace& face, uint32_t map_size, uint32_t reach) {
   const double half = std::max(face.half_width, face.half_height) * (face.orthographic ? 1.0 : face.far);
-  return reach * 2.0 * half / map_size;
+  return reach * std::numbers::sqrt2 * 2.0 * half / map_size;
 }
 
 glm::dvec4 place_of(const Light& light, const glm::dvec3& origin) {
