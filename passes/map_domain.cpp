@@ -119,8 +119,9 @@ constexpr double widest_range = 1e4 * (1 - 1e-9);  // far / near
 void warn_about_range(Environment& e) {
   for (const LightFace& face : e.gpu_scene().faces()) {
     if (face.orthographic || face.far < widest_range * face.near) continue;
-    e.warn(fmt::format("what is nearer to light '{}' than {:.3g} is not in its map",
-                       e.scene().lights[face.light].name, face.near));
+    e.warn(fmt::format(
+        "what is nearer to light '{}' than {:.3g} casts as if it were there, and receives no shadow",
+        e.scene().lights[face.light].name, face.near));
     return;
   }
 }
