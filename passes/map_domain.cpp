@@ -10,7 +10,7 @@
 namespace gnomon {
 namespace {
 
-constexpr double steep_slope = 20;          // STEEP of shaders/glsl/lib/receiver_plane.glsl
+constexpr double steep_slope = 20;          // MAX_SLOPE of shaders/glsl/lib/receiver_plane.glsl
 constexpr double most_grazed = 0.5;         // share of the lit surface beyond which a light is warned of
 constexpr double most_of_map = 0.1;         // share of the map's side that a filter may be wide
 constexpr uint32_t least_useful_side = 16;  // texels: below, shadows of the ordinary stability scene are lost

@@ -33,8 +33,8 @@ float caster_depth(ivec2 texel) {
 // caster's shadow and on the moving caster itself.
 bool meets_moving(AreaReceiver receiver, Receiver plane, ivec2 texel) {
 #ifdef MOVING_CASTERS
-  float biased = 1.0 / plane.base;  // nearer than plane.z by the bias; perspective faces: area lights are spots
-  Receiver behind = bias_receiver(receiver.face, plane, 2.0 * (biased - plane.z));
+  float biased = 1.0 / plane.base;  // perspective faces: area lights are spots
+  Receiver behind = bias_receiver(receiver.face, plane, biased - plane.z);
   return plane_depth(receiver, behind, vec2(texel) + 0.5) > maps_at(texel, MOVING_LAYER).x;
 #else
   return false;

@@ -63,10 +63,8 @@ float receiver_linear_depth(Query query, float level) {
   float half_width = 0.5 * (float(params.kernel) * exp2(level) - 1.0);
   float z = receiver_depth(face, plane, plane.texel, true);
   vec2 outwards = half_width * sign(plane.gradient) * (is_orthographic(face) ? 1.0 : -1.0);
-  // A steep plane is not followed behind the receiver; it rises towards the light as much as it falls behind.
-  bool steep = plane.slope >= STEEP;
-  float other = receiver_depth(face, plane, plane.texel + (steep ? -outwards : outwards), true);
-  return clamp(z - params.bias_kernel * abs(other - z), 0.0, 1.0);
+  float farthest = receiver_depth(face, plane, plane.texel + outwards, true);
+  return clamp(z - params.bias_kernel * max(farthest - z, 0.0), 0.0, 1.0);
 }
 
 float warped_visibility(vec2 stored, float t, float exponent) {

@@ -8,26 +8,17 @@
 
 #include "light_face.glsl"
 
-// A steeper plane, as a tangent (87 degrees), is nearly edge-on to the light: one texel covers more depth than a bias could. It
-// is followed exactly towards the light, where the map may hold it; away from the light by so many texels only, as what lies
-// behind the receiver is no occluder.
-const float STEEP = 20.0;
-
-// Half a texel's diagonal times the largest error, in radians, of a normal of two 16-bit octahedral coordinates.
-const float NORMAL_ERROR = 0.7071 * 6.5e-5;
+// Steepest slope that a plane is followed along, as a tangent: beyond, the plane is nearly edge-on to the light and one
+// texel covers more depth than any bias could (87 degrees).
+const float MAX_SLOPE = 20.0;
 
 struct Receiver {
   vec2 texel;     // position in the map, texels
   float base;     // plane value (1/z or z) at `texel`, biased
   vec2 gradient;  // of the plane value, per texel
   float z;        // distance along the face's axis, world units
-  float slope;    // tangent of the angle between the plane and the map's texels, at most STEEP
-  float last;     // the farthest plane value (1/z or z) that is compared
+  float slope;    // tangent of the angle between the plane and the map's texels
 };
-
-// Depth, in texels, by which the plane of slope `tangent` may be wrong in its texel: an angle moves it by the slope's square. Up
-// to STEEP (0.02 texels) any bias covers it.
-float plane_error(float tangent) { return NORMAL_ERROR * max(tangent * tangent - STEEP * STEEP, 0.0); }
 
 // `q`: point in the face's frame; `n`: unit geometric normal there, towards the light; `size`: texels a side.
 Receiver make_receiver(LightFace face, vec3 q, vec3 n, float size) {
@@ -37,25 +28,23 @@ Receiver make_receiver(LightFace face, vec3 q, vec3 n, float size) {
   r.z = projected.z;
   // n . x = c with x = z * ray (perspective) or ray - z e_z (orthographic), ray affine in the map coordinates.
   vec2 step = 2.0 * vec2(face.range.z, -face.range.w) / size;  // lateral units per texel
-  float texel = texel_world_size(face, r.z, size), tangent;
   if (is_orthographic(face)) {
     // z = (n.xy . lateral - c) / n.z
-    float facing = max(n.z, 1e-6);
+    float facing = max(n.z, 1e-4);
+    r.base = r.z;
     r.gradient = n.xy * step / facing;
-    tangent = length(n.xy) / facing;
-    r.base = r.z - texel * plane_error(tangent);
-    r.last = tangent > STEEP ? r.z + STEEP * texel : face.range.y;
+    r.slope = min(length(n.xy) / facing, MAX_SLOPE);
+    r.gradient *= min(1.0, MAX_SLOPE * facing / max(length(n.xy), 1e-6));
   } else {
     // 1/z = n . ray / c, c = n . q = -(distance of the light from the plane), negative when the plane faces the light.
     float towards = max(-dot(n, q), 1e-6 * r.z);
-    r.gradient = -n.xy * step / towards;
+    r.base = 1.0 / r.z;
+    vec2 gradient = -n.xy * step / towards;
     // dz / d(lateral world unit) = z^2 d(1/z) / (z d(lateral tangent)).
-    tangent = length(r.gradient / step) * r.z;
-    r.base = 1.0 / max(r.z - texel * plane_error(tangent), 1e-6 * r.z);
-    // A plane that passes behind the light within the offset counts as infinitely far.
-    r.last = 1.0 / (tangent > STEEP ? r.z + STEEP * texel : 1e4 * r.z);
+    float slope = length(gradient / step) * r.z;
+    r.slope = min(slope, MAX_SLOPE);
+    r.gradient = gradient * min(1.0, MAX_SLOPE / max(slope, 1e-6));
   }
-  r.slope = min(tangent, STEEP);
   return r;
 }
 
@@ -64,7 +53,7 @@ Receiver bias_receiver(LightFace face, Receiver r, float bias) {
   if (is_orthographic(face))
     r.base -= bias;
   else
-    r.base = 1.0 / max(1.0 / r.base - bias, 1e-6 * r.z);
+    r.base = 1.0 / max(r.z - bias, 1e-6 * r.z);
   return r;
 }
 
@@ -72,16 +61,17 @@ Receiver bias_receiver(LightFace face, Receiver r, float bias) {
 // beyond the far distance between two texels is not in the shadow of nothing.
 float receiver_depth(LightFace face, Receiver r, vec2 at, bool linear) {
   float value = r.base + dot(r.gradient, at - r.texel);
-  if (is_orthographic(face)) return min(encode_linear(face, min(value, r.last)), 1.0);
-  value = max(value, r.last);
+  if (is_orthographic(face)) return min(encode_linear(face, value), 1.0);
+  // A plane that passes behind the light within the offset counts as infinitely far.
+  value = max(value, 1.0 / (1e4 * r.z));
   return min(linear ? encode_linear(face, 1.0 / value) : encode_perspective(face, value), 1.0);
 }
 
 // The same at four positions, given by their coordinates.
 vec4 receiver_depths(LightFace face, Receiver r, vec4 x, vec4 y, bool linear) {
   vec4 value = r.base + r.gradient.x * (x - r.texel.x) + r.gradient.y * (y - r.texel.y);
-  if (is_orthographic(face)) return min(encode_linear(face, min(value, r.last)), 1.0);
-  value = max(value, r.last);
+  if (is_orthographic(face)) return min(encode_linear(face, value), 1.0);
+  value = max(value, 1.0 / (1e4 * r.z));
   return min(linear ? encode_linear(face, 1.0 / value) : encode_perspective(face, value), 1.0);
 }
 
