@@ -103,11 +103,14 @@ std::vector<StabilityCase> single_cases(const StabilityOptions& options,
   return cases;
 }
 
-// Of each axis the point with the largest error inside the technique's domain; of those the worst, each two together.
+// Of each axis the point with the largest error inside the technique's domain; of those the worst, each two
+// together.
 std::vector<StabilityCase> worst_pairs(const StabilityRow& row) {
   std::map<std::string, const StabilityFinding*> worst;
   for (const StabilityFinding& f : row.findings) {
-    if (f.verdict == Verdict::fails || f.verdict == Verdict::refuses || f.verdict == Verdict::warned || f.test.size() != 1) continue;
+    if (f.verdict == Verdict::fails || f.verdict == Verdict::refuses || f.verdict == Verdict::warned ||
+        f.test.size() != 1)
+      continue;
     const StabilityFinding*& best = worst[f.test.front().first];
     if (best == nullptr || error_ratio(f, row.base) > error_ratio(*best, row.base)) best = &f;
   }

@@ -34,7 +34,7 @@ PortRef add_pass(Graph& graph, std::vector<GraphNode>::iterator gbuffer) {
   node.place = "/outputs/visibility";
   node.in["depth"] = {gbuffer->id, "depth"};
   node.in["geometric"] = {gbuffer->id, "geometric"};
-  const PortRef visibility{node.id, "visibility"};
+  PortRef visibility{node.id, "visibility"};
   graph.nodes.insert(gbuffer + 1, std::move(node));
   return visibility;
 }

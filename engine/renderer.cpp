@@ -92,7 +92,8 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
   options.memory = [this](const Resource& resource) { return device_need(device, resource); };
   const double aspect = camera.aspect.value_or(double(settings.width) / settings.height);
   const SceneFacts facts_of_view = scene_facts(*scene, camera, aspect, settings.height);
-  plan = compile(graph, setting, settings.keep_all ? promising_nothing(facts_of_view) : facts_of_view, options);
+  plan =
+      compile(graph, setting, settings.keep_all ? promising_nothing(facts_of_view) : facts_of_view, options);
   gpu_scene.update(view(), 0, 0);
 
   VkPipelineCacheCreateInfo cache_info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};

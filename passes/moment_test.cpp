@@ -1,6 +1,6 @@
 #include "engine/context.h"
-#include "passes/moment_basis.h"
 #include "passes/map_domain.h"
+#include "passes/moment_basis.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {

@@ -2,8 +2,8 @@
 
 #include "engine/context.h"
 #include "passes/divide_up.h"
-#include "passes/pixel_list.h"
 #include "passes/map_domain.h"
+#include "passes/pixel_list.h"
 #include "passes/receiver_ports.h"
 
 namespace gnomon {

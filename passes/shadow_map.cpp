@@ -71,7 +71,7 @@ class ShadowMap : public Pass {
     state.vertex = "shadow_map.vert.glsl";
     state.depth = VK_FORMAT_D32_SFLOAT;
     state.depth_test = state.depth_write = true;
-  state.depth_clamp = true;  // what is nearer than the face's range casts its shadow all the same
+    state.depth_clamp = true;  // what is nearer than the face's range casts its shadow all the same
     state.depth_compare = VK_COMPARE_OP_LESS;
     if (linear) state.defines.emplace_back("LINEAR_DEPTH", "1");
     if (peel) state.defines.emplace_back("PEEL", "1");

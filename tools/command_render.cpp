@@ -183,8 +183,7 @@ void print_run(const Job& job, const json& run) {
              frame["median"].get<double>(), frame["n"].get<size_t>(), frame["ci95"][0].get<double>(),
              frame["ci95"][1].get<double>(), run["record_ms"]["median"].get<double>());
   print_passes(run);
-  for (const json& pass : run["left_out"])
-    print_left_out(pass);
+  for (const json& pass : run["left_out"]) print_left_out(pass);
   print_error(run["error"]);
   if (run.contains("sequence")) print_sequence(run["sequence"]);
 }
