@@ -53,28 +53,19 @@ std::optional<glm::dvec4> side_plane(const std::vector<glm::dvec3>& corners, con
 }
 
 bool inside_face(const LightFace& face, const Corners& corners, const glm::dvec3& origin) {
-  std::array<int, 5> outside{};
-  for (const glm::dvec3& p : corners) {
-    const glm::dvec3 v(face.light_from_world * glm::dvec4(p + origin, 1.0));
-    const double depth = face.orthographic ? 1.0 : -v.z;
-    outside[0] += v.x < -face.half_width * depth;
-    outside[1] += v.x > face.half_width * depth;
-    outside[2] += v.y < -face.half_height * depth;
-    outside[3] += v.y > face.half_height * depth;
-    outside[4] += !face.orthographic && v.z >= 0;
-  }
-  return std::find(outside.begin(), outside.end(), 8) == outside.end();
+  glm::dmat4 from = face.light_from_world;
+  from[3] = from * glm::dvec4(origin, 1.0);
+  if (!face.orthographic) return !outside_pyramid(corners, from, face.half_width, face.half_height, 0.0);
+  Bounds box;
+  for (const glm::dvec3& p : corners) box.add(glm::dvec3(from * glm::dvec4(p, 1.0)));
+  return box.max.x >= -face.half_width && box.min.x <= face.half_width && box.max.y >= -face.half_height &&
+         box.min.y <= face.half_height;
 }
 
 // World units that `reach` texels of a face along both axes span at most.
 double reach_world(const LightFace& face, uint32_t map_size, uint32_t reach) {
   const double half = std::max(face.half_width, face.half_height) * (face.orthographic ? 1.0 : face.far);
   return reach * std::numbers::sqrt2 * 2.0 * half / map_size;
-}
-
-glm::dvec4 place_of(const Light& light, const glm::dvec3& origin) {
-  if (light.type == LightType::directional) return glm::dvec4(glm::dvec3(light.world_from_light[2]), 0.0);
-  return light.world_from_light[3] - glm::dvec4(origin, 0.0);
 }
 
 }  // namespace
@@ -93,6 +84,25 @@ std::array<glm::dvec3, 8> box_corners(const Scene& scene, const Instance& instan
   return corners;
 }
 
+bool outside_pyramid(const Corners& corners, const glm::dmat4& view_from_corners, double half_width,
+                     double half_height, double nearest) {
+  std::array<int, 5> outside{};
+  for (const glm::dvec3& p : corners) {
+    const glm::dvec3 v(view_from_corners * glm::dvec4(p, 1.0));
+    outside[0] += v.x < half_width * v.z;
+    outside[1] += -v.x < half_width * v.z;
+    outside[2] += v.y < half_height * v.z;
+    outside[3] += -v.y < half_height * v.z;
+    outside[4] += -v.z < nearest;
+  }
+  return std::find(outside.begin(), outside.end(), 8) != outside.end();
+}
+
+glm::dvec4 light_place(const Light& light, const glm::dvec3& origin) {
+  if (light.type == LightType::directional) return glm::dvec4(glm::dvec3(light.world_from_light[2]), 0.0);
+  return light.world_from_light[3] - glm::dvec4(origin, 0.0);
+}
+
 ViewVolume::ViewVolume(const Scene& scene, const Camera& camera, double aspect, const glm::dvec3& origin) {
   glm::dmat4 placed = camera.world_from_camera;
   placed[3] -= glm::dvec4(origin, 0.0);
@@ -100,18 +110,12 @@ ViewVolume::ViewVolume(const Scene& scene, const Camera& camera, double aspect, 
   const double y = std::tan(0.5 * camera.fov_y), x = y * aspect;
   double nearest = 1e300, farthest = 0;
   for (const Instance& instance : scene.instances) {
-    double near = 1e300, far = 0;
-    std::array<int, 4> outside{};
-    for (const glm::dvec3& p : box_corners(scene, instance, origin)) {
-      const glm::dvec3 v(view * glm::dvec4(p, 1.0));
-      near = std::min(near, -v.z), far = std::max(far, -v.z);
-      outside[0] += v.x < x * v.z;
-      outside[1] += -v.x < x * v.z;
-      outside[2] += v.y < y * v.z;
-      outside[3] += -v.y < y * v.z;
+    const Corners corners = box_corners(scene, instance, origin);
+    if (outside_pyramid(corners, view, x, y, camera.near)) continue;
+    for (const glm::dvec3& p : corners) {
+      const double depth = -glm::dvec3(view * glm::dvec4(p, 1.0)).z;
+      nearest = std::min(nearest, depth), farthest = std::max(farthest, depth);
     }
-    if (far < camera.near || std::find(outside.begin(), outside.end(), 8) != outside.end()) continue;
-    nearest = std::min(nearest, near), farthest = std::max(farthest, far);
   }
   if (nearest > farthest) return;
   nearest_ = std::max(nearest, camera.near);
@@ -162,7 +166,7 @@ std::vector<std::vector<bool>> casters_in_view(const Scene& scene, const Camera&
     std::vector<bool>& one = needed.emplace_back(boxes.size(), false);
     if (!shadowless[face.light].empty()) continue;
     const double around = rounding + (reach ? reach_world(face, map_size, *reach) : 0.0);
-    const LightVolume volume(view, place_of(scene.lights[face.light], origin), around);
+    const LightVolume volume(view, light_place(scene.lights[face.light], origin), around);
     for (size_t i = 0; i < boxes.size(); ++i)
       one[i] = inside_face(face, boxes[i], origin) && (!reach || volume.meets(boxes[i]));
   }

@@ -45,6 +45,11 @@ class LightVolume {
 
 // Corners of an instance's bounds, relative to `origin`.
 std::array<glm::dvec3, 8> box_corners(const Scene& scene, const Instance& instance, const glm::dvec3& origin);
+// Has some plane of an open pyramid (it looks along -z; tangents of its half angles) all corners outside?
+bool outside_pyramid(const std::array<glm::dvec3, 8>& corners, const glm::dmat4& view_from_corners,
+                     double half_width, double half_height, double nearest);
+// A light as LightVolume takes it.
+glm::dvec4 light_place(const Light& light, const glm::dvec3& origin);
 
 // Instances to draw into each face of a shadow map so that everything the camera sees finds its casters.
 // `reach`: texels that readers use around a receiver's place; none: anywhere, and only what a face does not

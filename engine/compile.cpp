@@ -171,9 +171,14 @@ class Compiler {
     }
   }
 
+  bool is_exported(const PortKey& key) const {
+    const std::vector<PortKey> all = roots();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const PortKey& root) { return root_of(resolved_, folding_, root) == key; });
+  }
+
   bool is_read(const PortKey& key) const {
-    for (const PortKey& root : roots())
-      if (root_of(resolved_, folding_, root) == key) return true;
+    if (is_exported(key)) return true;
     for (const uint32_t reader : live_) {
       const ResolvedNode& node = resolved_.nodes[reader];
       for (const auto* inputs : {&node.in, &node.previous})
@@ -233,11 +238,7 @@ class Compiler {
 
   std::optional<uint32_t> reach(const PortKey& key) const {
     if (options_.keep_all) return std::nullopt;
-    const std::vector<PortKey> all = roots();
-    const bool exported = std::any_of(all.begin(), all.end(), [&](const PortKey& root) {
-      return root_of(resolved_, folding_, root) == key;
-    });
-    return reach_of(resolved_, folding_, live_, key, exported);
+    return reach_of(resolved_, folding_, live_, key, is_exported(key));
   }
 
   void connect(uint32_t index, const Port& port, PlanNode& node) {

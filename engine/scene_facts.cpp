@@ -34,26 +34,11 @@ bool overlap(const Bounds& a, const Bounds& b) {
   return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
 }
 
-// Some plane of an open pyramid (looking along -z) has all corners outside.
-bool outside_pyramid(const Corners& corners, const glm::dmat4& view_from_world, double half_width,
-                     double half_height, double nearest) {
-  std::array<int, 5> outside{};
-  for (const glm::dvec3& p : corners) {
-    const glm::dvec3 v(view_from_world * glm::dvec4(p, 1.0));
-    outside[0] += v.x < half_width * v.z;
-    outside[1] += -v.x < half_width * v.z;
-    outside[2] += v.y < half_height * v.z;
-    outside[3] += -v.y < half_height * v.z;
-    outside[4] += -v.z < nearest;
-  }
-  return std::find(outside.begin(), outside.end(), 8) != outside.end();
-}
-
 // The light as points whose convex hull holds it: its centre, or points around its area.
 struct Source {
   bool directional = false;
-  glm::dvec3 centre{0.0};  // relative to the scene's centre
-  double radius = 0;       // of the area around it
+  glm::dvec4 place{0.0};  // light_place(), relative to the scene's centre
+  double radius = 0;      // of the area around it
   std::optional<double> range;
   glm::dmat4 light_from_world{1.0};  // relative to the scene's centre
   std::vector<glm::dvec3> points;
@@ -66,7 +51,7 @@ Source source_of(const Light& light, const glm::dvec3& origin) {
   glm::dmat4 placed = light.world_from_light;
   placed[3] -= glm::dvec4(origin, 0.0);
   source.light_from_world = glm::inverse(placed);
-  source.centre = glm::dvec3(placed[3]);
+  source.place = light_place(light, origin);
   if (light.type != LightType::directional) source.range = light.range;
   if (!shines_as_area(light))
     source.points.emplace_back(placed[3]);
@@ -74,7 +59,7 @@ Source source_of(const Light& light, const glm::dvec3& origin) {
     for (const glm::dvec3& p : enclosing_points(*light.area))
       source.points.emplace_back(placed * glm::dvec4(p, 1.0));
   for (const glm::dvec3& p : source.points)
-    source.radius = std::max(source.radius, glm::distance(p, source.centre));
+    source.radius = std::max(source.radius, glm::distance(p, glm::dvec3(placed[3])));
   if (light.type == LightType::spot) source.half_tangent = std::tan(0.5 * light.map_fov);
   return source;
 }
@@ -86,7 +71,7 @@ bool behind(const Body& caster, const Body& receiver, const Source& source, doub
   const auto height = [&](const glm::dvec3& p) { return glm::dot(p - receiver.point, receiver.normal); };
   double side = 0;
   if (source.directional) {
-    side = glm::dot(glm::dvec3(glm::transpose(source.light_from_world)[2]), receiver.normal);
+    side = glm::dot(glm::dvec3(source.place), receiver.normal);
   } else {
     for (const glm::dvec3& p : source.points) {
       const double h = height(p);
@@ -121,17 +106,19 @@ bool may_shadow(const Body& caster, const Body& receiver, const Source& source, 
 // A penumbra is at most as wide as the light, times the way from the nearest caster to the farthest receiver,
 // over that from the light to the caster. World units.
 double widest_penumbra(const std::vector<Body>& bodies, const View& view, const Source& source) {
+  if (source.radius == 0) return 0;
+  const glm::dvec3 centre(source.place);
   double nearest = 1e300, farthest = 0;
   for (size_t i = 0; i < bodies.size(); ++i) {
     Bounds box;
     for (const glm::dvec3& p : bodies[i].corners) {
       box.add(p);
-      if (view.visible[i]) farthest = std::max(farthest, glm::distance(p, source.centre));
+      if (view.visible[i]) farthest = std::max(farthest, glm::distance(p, centre));
     }
-    nearest = std::min(nearest, glm::distance(glm::clamp(source.centre, box.min, box.max), source.centre));
+    nearest = std::min(nearest, glm::distance(glm::clamp(centre, box.min, box.max), centre));
   }
   const double gap = nearest - source.radius;
-  if (source.radius == 0 || farthest <= nearest) return 0;
+  if (farthest <= nearest) return 0;
   return gap > 0 ? 2 * source.radius * (farthest - nearest) / gap : 1e300;
 }
 
@@ -164,8 +151,7 @@ bool faces_away(const Body& receiver, const Source& source, const glm::dvec3& ey
   if (!receiver.planar) return false;
   constexpr double kGrazing = 1e-3;  // sine of the angle below which planar meshes' triangles may differ
   const double seen = glm::dot(eye - receiver.point, receiver.normal);
-  const glm::dvec3 to_light = source.directional ? glm::dvec3(glm::transpose(source.light_from_world)[2])
-                                                 : source.centre - receiver.point;
+  const glm::dvec3 to_light = glm::dvec3(source.place) - source.place.w * receiver.point;
   const double side = glm::dot(to_light, receiver.normal) * (seen < 0 ? -1.0 : 1.0);
   return side < -kGrazing * glm::length(to_light);
 }
@@ -175,21 +161,19 @@ bool out_of_range(const Body& receiver, const Source& source) {
   if (!source.range) return false;
   Bounds box;
   for (const glm::dvec3& p : receiver.corners) box.add(p);
-  return glm::distance(glm::clamp(source.centre, box.min, box.max), source.centre) > *source.range;
+  const glm::dvec3 centre(source.place);
+  return glm::distance(glm::clamp(centre, box.min, box.max), centre) > *source.range;
 }
 
 // Why the camera sees no shadow of a light; empty: it may see one.
 std::string shadowless_reason(const std::vector<Body>& bodies, const View& view, const Source& source,
                               double tolerance) {
-  std::vector<size_t> seen, receivers;
+  std::vector<size_t> seen;
   for (size_t r = 0; r < bodies.size(); ++r)
     if (view.visible[r]) seen.push_back(r);
   if (seen.empty()) return "the camera sees nothing";
   const auto keep = [&](auto&& leaves_out) {
-    receivers.clear();
-    std::copy_if(seen.begin(), seen.end(), std::back_inserter(receivers),
-                 [&](size_t r) { return !leaves_out(bodies[r]); });
-    seen = receivers;
+    std::erase_if(seen, [&](size_t r) { return leaves_out(bodies[r]); });
     return seen.empty();
   };
   if (keep([&](const Body& r) { return out_of_range(r, source); }))
@@ -201,10 +185,7 @@ std::string shadowless_reason(const std::vector<Body>& bodies, const View& view,
     return "nothing that the camera sees is in the light's frustum";
   if (keep([&](const Body& r) { return faces_away(r, source, view.eye); }))
     return "everything that the camera sees faces away from the light";
-  const glm::dvec4 light = source.directional
-                               ? glm::dvec4(glm::dvec3(glm::transpose(source.light_from_world)[2]), 0.0)
-                               : glm::dvec4(source.centre, 1.0);
-  const LightVolume between(view.volume, light, source.radius + tolerance);
+  const LightVolume between(view.volume, source.place, source.radius + tolerance);
   for (size_t c = 0; c < bodies.size(); ++c) {
     if (!between.meets(bodies[c].corners)) continue;
     for (const size_t r : seen) {
@@ -247,10 +228,10 @@ SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect, 
   for (const Light& light : scene.lights) {
     facts.light_moves.push_back(light.moving);
     const bool may = !still || light.moving;  // somewhere on the way
-    facts.shadowless.push_back(
-        may ? std::string()
-            : shadowless_reason(bodies, seen, source_of(light, origin), 1e-6 * scene.bounds.radius()));
-    const double widest = may ? 1e300 : widest_penumbra(bodies, seen, source_of(light, origin));
+    const Source source = source_of(light, origin);
+    facts.shadowless.push_back(may ? std::string()
+                                   : shadowless_reason(bodies, seen, source, 1e-6 * scene.bounds.radius()));
+    const double widest = may ? 1e300 : widest_penumbra(bodies, seen, source);
     facts.penumbra.push_back(widest == 0 ? 0.0 : widest / std::max(facts.smallest_pixel, 1e-300));
     facts.light_size.push_back(shines_as_area(light) ? std::max(light.area->width, light.area->height) : 0.0);
   }

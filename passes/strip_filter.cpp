@@ -36,6 +36,22 @@ void clear_lists(Context& c) {
   c.fill("control", 0, kReach * kWord, kWord);
 }
 
+// View depth, world units, at which the window has its width.
+double reference_depth(const SceneFacts& facts, const Params& params) {
+  const double given = params.number("reference_depth");
+  return given > 0 ? given : facts.middle_depth;
+}
+
+constexpr double most_of_image = 0.25;  // share of the image's smaller side that the filter may be wide
+
+void warn_about_width(Environment& e) {
+  const double width = e.params().number("width");
+  const uint32_t side = std::min(e.settings().width, e.settings().height);
+  if (width > 1 && width > most_of_image * side)
+    e.warn("a filter of " + std::to_string(std::lround(width)) + " pixels is wide for an image of " +
+           std::to_string(side));
+}
+
 }  // namespace
 
 void StripFilter::declare(Declaration& d) const {
@@ -75,26 +91,11 @@ void StripFilter::declare(Declaration& d) const {
 }
 
 Need StripFilter::need(const SceneFacts& facts, const Params& params) const {
-  const double given = params.number("reference_depth");
-  const double widest = params.number("width") * (given > 0 ? given : facts.middle_depth) /
-                        std::max(facts.nearest_depth, 1e-300);
+  const double widest =
+      params.number("width") * reference_depth(facts, params) / std::max(facts.nearest_depth, 1e-300);
   if (widest > 1) return Need::run();
   return Need::bypass("visibility", "visibility", "the filter is nowhere wider than a pixel");
 }
-
-namespace {
-
-constexpr double most_of_image = 0.25;  // share of the image's smaller side that the filter may be wide
-
-void warn_about_width(Environment& e) {
-  const double width = e.params().number("width");
-  const uint32_t side = std::min(e.settings().width, e.settings().height);
-  if (width > 1 && width > most_of_image * side)
-    e.warn("a filter of " + std::to_string(std::lround(width)) + " pixels is wide for an image of " +
-           std::to_string(side));
-}
-
-}  // namespace
 
 void StripFilter::prepare(Environment& e) {
   tiled_ = e.connected("tiles") && e.connected("arguments");
@@ -104,8 +105,7 @@ void StripFilter::prepare(Environment& e) {
   along_x_ = e.compute(shader_);
   along_y_ = e.compute(shader_, {{"ALONG_Y_AXIS", "1"}});
   warn_about_width(e);
-  const double given = e.params().number("reference_depth");
-  reference_depth_ = float(given > 0 ? given : e.scene_facts().middle_depth);
+  reference_depth_ = float(reference_depth(e.scene_facts(), e.params()));
   e.fact("reference_depth", reference_depth_);
 }
 
