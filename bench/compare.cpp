@@ -22,14 +22,15 @@ std::string identity(const json& row, bool with_reference) {
     parts.push_back(row.contains(name) && !row[name].is_null() ? row[name] : json(""));
   if (with_reference)
     parts.push_back(row.contains("reference") && !row["reference"].is_null() ? row["reference"] : json(""));
+  parts.push_back(figure_at(row, "/light_scale").value_or(1));
   parts.push_back(figure_at(row, "/sequence/frames").value_or(0));
   return parts.dump();
 }
 
 std::string place_text(const json& row) {
   const auto width = figure_at(row, "/size/0"), height = figure_at(row, "/size/1");
-  return fmt::format("{} {:g}x{:g} {}", row.value("scene", "?"), width.value_or(0), height.value_or(0),
-                     row_label(row));
+  return fmt::format("{} {:g}x{:g}{} {}", row.value("scene", "?"), width.value_or(0), height.value_or(0),
+                     light_scale_text(row), row_label(row));
 }
 
 // Finds the row of an earlier run that measured the same.

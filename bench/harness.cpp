@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "bench/results.h"
 #include "engine/config.h"
@@ -19,18 +20,18 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-struct Place {  // one scene at one size, and the configurations to measure there
-  fs::path scene;
-  Extent size;
+struct PlaceToMeasure : SuitePlace {
   std::vector<size_t> configs;
 };
 
-Row row_of(const Suite& suite, const BenchOptions& options, const Place& place, const SuiteConfig& config) {
+Row row_of(const Suite& suite, const BenchOptions& options, const SuitePlace& place,
+           const SuiteConfig& config) {
   Row row;
   row.scene = place.scene;
   describe_graph(row, config.graph);
   row.set = config.set;
   row.size = place.size;
+  row.light_scale = place.light_scale;
   row.camera = suite.camera;
   row.memory_limit = suite.memory;
   row.reference_samples = suite.samples;
@@ -42,6 +43,7 @@ Row row_of(const Suite& suite, const BenchOptions& options, const Place& place, 
                    suite.repeat,       suite.instrumented,
                    suite.samples,      row.device.name,
                    row.device.driver,  version()};
+  if (row.light_scale != 1) identity.push_back({{"light_scale", row.light_scale}});
   if (suite.frames > 0) identity.push_back({suite.frames, suite.fps});
   if (suite.seconds > 0) identity.push_back({{"seconds", suite.seconds}, {"least", suite.least}});
   row.key = canonical_hash(identity);
@@ -87,7 +89,7 @@ class SuiteRun {
 
   BenchResult run() {
     result_.results = file_.path();
-    for (const Place& place : places_) run_place(place);
+    for (const PlaceToMeasure& place : places_) run_place(place);
     report("done");
     return result_;
   }
@@ -110,6 +112,7 @@ class SuiteRun {
     return {{"schema", 1},
             {"scenes", scenes},
             {"size", sizes},
+            {"light_scale", suite_.light_scales},
             {"camera", suite_.camera},
             {"baseline", suite_.baseline},
             {"graphs", suite_.graphs_json.empty() ? json(nullptr) : json::parse(suite_.graphs_json)},
@@ -124,27 +127,32 @@ class SuiteRun {
             {"reference", {{"samples", suite_.samples}}}};
   }
 
-  static bool runs_at(const SuiteConfig& config, const Extent& size) {
-    return std::find(config.sizes.begin(), config.sizes.end(), size) != config.sizes.end();
+  static bool runs_at(const SuiteConfig& config, const SuitePlace& place) {
+    const auto& [sizes, scales] = std::tie(config.sizes, config.light_scales);
+    return std::find(sizes.begin(), sizes.end(), place.size) != sizes.end() &&
+           std::find(scales.begin(), scales.end(), place.light_scale) != scales.end();
   }
 
   void plan() {
     size_t index = 0;
-    for (const fs::path& scene : suite_.scenes) {
-      for (const Extent& size : all_sizes(suite_)) {
-        Place place{scene, size, {}};
-        for (size_t i = 0; i < suite_.configs.size(); ++i) {
-          if (!runs_at(suite_.configs[i], size)) continue;
-          if (index++ % options_.shards != options_.shard - 1) continue;
-          if (finished_.count(row_of(suite_, options_, place, suite_.configs[i]).key) != 0)
-            ++result_.resumed;
-          else
-            place.configs.push_back(i);
-        }
-        total_ += place.configs.size();
-        if (!place.configs.empty()) places_.push_back(std::move(place));
-      }
+    for (const fs::path& scene : suite_.scenes)
+      for (const double light_scale : all_light_scales(suite_))
+        for (const Extent& size : all_sizes(suite_)) plan_place({scene, size, light_scale}, index);
+  }
+
+  // `index`: of the next row among those of all shards.
+  void plan_place(const SuitePlace& at, size_t& index) {
+    PlaceToMeasure place{at, {}};
+    for (size_t i = 0; i < suite_.configs.size(); ++i) {
+      if (!runs_at(suite_.configs[i], at)) continue;
+      if (index++ % options_.shards != options_.shard - 1) continue;
+      if (finished_.count(row_of(suite_, options_, at, suite_.configs[i]).key) != 0)
+        ++result_.resumed;
+      else
+        place.configs.push_back(i);
     }
+    total_ += place.configs.size();
+    if (!place.configs.empty()) places_.push_back(std::move(place));
   }
 
   void report(const std::string& note, double part = 0) const {
@@ -161,12 +169,12 @@ class SuiteRun {
     ++result_.measured;
   }
 
-  void run_place(const Place& place) {
+  void run_place(const PlaceToMeasure& place) {
     const std::string name = place.scene.stem().string();
     report(name + ": scene and reference");
     std::unique_ptr<Stage> stage;
     try {
-      stage = make_stage_(suite_, place.scene, place.size);
+      stage = make_stage_(suite_, place);
     } catch (const std::exception& error) {
       for (const size_t config : place.configs) {
         Row row = row_of(suite_, options_, place, suite_.configs[config]);
@@ -186,7 +194,7 @@ class SuiteRun {
 
   // Techniques with the same baseline are measured together. The baseline itself first, when it is to be
   // measured.
-  std::map<size_t, std::vector<size_t>> by_baseline(const Place& place) const {
+  std::map<size_t, std::vector<size_t>> by_baseline(const PlaceToMeasure& place) const {
     std::map<size_t, std::vector<size_t>> groups;
     for (const size_t config : place.configs) {
       std::vector<size_t>& group = groups[suite_.configs[config].baseline];
@@ -205,7 +213,7 @@ class SuiteRun {
     std::unique_ptr<Subject> subject;
   };
 
-  Entry open(const Place& place, Stage& stage, size_t config, bool wanted) const {
+  Entry open(const SuitePlace& place, Stage& stage, size_t config, bool wanted) const {
     Entry entry{config, wanted, row_of(suite_, options_, place, suite_.configs[config]), nullptr};
     const Stopwatch watch;
     try {
@@ -249,7 +257,7 @@ class SuiteRun {
     }
   }
 
-  void run_chunk(const Place& place, Stage& stage, size_t baseline, const std::vector<size_t>& configs) {
+  void run_chunk(const SuitePlace& place, Stage& stage, size_t baseline, const std::vector<size_t>& configs) {
     const std::string scene = place.scene.stem().string();
     std::vector<Entry> entries;
     if (configs.front() != baseline) entries.push_back(open(place, stage, baseline, false));
@@ -285,7 +293,7 @@ class SuiteRun {
   const StageMaker& make_stage_;
   ResultsFile file_;
   std::set<std::string> finished_;
-  std::vector<Place> places_;
+  std::vector<PlaceToMeasure> places_;
   size_t total_ = 0;
   BenchResult result_;
 };

@@ -13,7 +13,14 @@
 
 namespace gnomon {
 
-// One scene at one size, ready for techniques. Made anew for each scene and size.
+// Where techniques are compared with one another.
+struct SuitePlace {
+  std::filesystem::path scene;
+  Extent size;             // pixels
+  double light_scale = 1;  // as with_light_scale()
+};
+
+// A place, ready for techniques. Made anew for each.
 class Stage {
  public:
   virtual ~Stage() = default;
@@ -27,8 +34,7 @@ class Stage {
   // After the rounds: memory, what was left out, warnings, error and non-finite values into the row.
   virtual void finish(const SuiteConfig& config, Subject& subject, Row& row) = 0;
 };
-using StageMaker = std::function<std::unique_ptr<Stage>(const Suite& suite,
-                                                        const std::filesystem::path& scene, Extent size)>;
+using StageMaker = std::function<std::unique_ptr<Stage>(const Suite& suite, const SuitePlace& place)>;
 
 struct BenchOptions {
   std::filesystem::path out;       // folder; results.jsonl and suite.json go there

@@ -29,6 +29,7 @@ json place_of(const json& row) {
   return {{"scene", field(row, "scene")},
           {"size", field(row, "size")},
           {"camera", field(row, "camera")},
+          {"light_scale", figure_at(row, "/light_scale").value_or(1)},
           {"device", field(row, "device")},
           {"driver", field(row, "driver")},
           {"samples", samples ? json(*samples) : json()},
@@ -195,10 +196,16 @@ json fit(const std::vector<double>& x, const std::vector<std::optional<double>>&
   return {{"exponent", law->exponent}, {"factor", law->factor}, {"r2", law->r2}, {"n", law->n}};
 }
 
-constexpr const char* output_pixels = "output_pixels";
+// Parameters of a place, and the member that they are made of; all others are variables of the graph.
+const std::map<std::string, std::string>& place_parameters() {
+  static const std::map<std::string, std::string> parameters = {{"output_pixels", "size"},
+                                                                {"light_scale", "light_scale"}};
+  return parameters;
+}
 
 std::optional<double> parameter_of(const json& row, const json& place, const std::string& name) {
-  if (name != output_pixels) return figure_at(row, "/vars/" + name);
+  if (place_parameters().count(name) == 0) return figure_at(row, "/vars/" + name);
+  if (name == "light_scale") return figure_at(place, "/light_scale");
   const auto width = figure_at(place, "/size/0"), height = figure_at(place, "/size/1");
   return width && height ? std::optional(*width * *height) : std::nullopt;
 }
@@ -206,8 +213,9 @@ std::optional<double> parameter_of(const json& row, const json& place, const std
 // All that must be equal for two rows to differ in `parameter` only.
 json others_of(const json& row, json place, const std::string& parameter) {
   json vars = row["vars"].is_object() ? row["vars"] : json::object();
-  if (parameter == output_pixels)
-    place.erase("size");
+  const auto of_place = place_parameters().find(parameter);
+  if (of_place != place_parameters().end())
+    place.erase(of_place->second);
   else
     vars.erase(parameter);
   return {place, row["technique"], vars};
@@ -215,8 +223,9 @@ json others_of(const json& row, json place, const std::string& parameter) {
 
 std::string fixed_text(const json& row, const json& place, const std::string& parameter) {
   std::string text;
-  if (parameter != output_pixels && place["size"].is_array() && place["size"].size() == 2)
+  if (parameter != "output_pixels" && place["size"].is_array() && place["size"].size() == 2)
     text = fmt::format("{}x{}", place["size"][0].dump(), place["size"][1].dump());
+  if (parameter != "light_scale") text += light_scale_text(place);
   if (row["set"].is_object())
     for (const auto& [name, value] : row["set"].items())
       if (name != parameter) text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value_text(value));
@@ -257,7 +266,7 @@ json sweeps_of(const json& rows, const json& metrics) {
       for (const auto& [name, value] : row["vars"].items())
         if (value.is_number()) names.insert(name);
   std::vector<std::string> parameters(names.begin(), names.end());
-  parameters.insert(parameters.begin(), output_pixels);
+  for (const auto& [name, member] : place_parameters()) parameters.insert(parameters.begin(), name);
   json sweeps = json::array();
   for (const std::string& parameter : parameters) {
     std::vector<json> groups;
@@ -323,7 +332,8 @@ json report_data(const std::vector<ReportRow>& sources) {
 
 std::string report_csv(const json& report) {
   std::string text =
-      "scene,width,height,device,technique,label,baseline,ms,ms_low,ms_high,ratio,ratio_low,ratio_high,"
+      "scene,width,height,light_scale,device,technique,label,baseline,ms,ms_low,ms_high,ratio,ratio_low,"
+      "ratio_high,"
       "steady_ms,steady_ms_low,steady_ms_high,peak_bytes";
   for (const json& metric : report["metrics"]) {
     const std::string name = csv_text(metric["name"]);
@@ -337,12 +347,12 @@ std::string report_csv(const json& report) {
       return value ? fmt::format("{}", *value) : std::string();
     };
     std::vector<std::string> cells = {
-        csv_text(place["scene"]),   at(place, "/size/0"),         at(place, "/size/1"),
-        csv_text(place["device"]),  csv_text(row["technique"]),   csv_text(row["label"]),
-        row["baseline"].dump(),     at(row, "/ms/median"),        at(row, "/ms/low"),
-        at(row, "/ms/high"),        at(row, "/ratio/median"),     at(row, "/ratio/low"),
-        at(row, "/ratio/high"),     at(row, "/steady_ms/median"), at(row, "/steady_ms/low"),
-        at(row, "/steady_ms/high"), at(row, "/peak_bytes")};
+        csv_text(place["scene"]),  at(place, "/size/0"),       at(place, "/size/1"),
+        at(place, "/light_scale"), csv_text(place["device"]),  csv_text(row["technique"]),
+        csv_text(row["label"]),    row["baseline"].dump(),     at(row, "/ms/median"),
+        at(row, "/ms/low"),        at(row, "/ms/high"),        at(row, "/ratio/median"),
+        at(row, "/ratio/low"),     at(row, "/ratio/high"),     at(row, "/steady_ms/median"),
+        at(row, "/steady_ms/low"), at(row, "/steady_ms/high"), at(row, "/peak_bytes")};
     std::string fronts;
     for (const json& metric : report["metrics"]) {
       const std::string name = metric["name"];

@@ -11,8 +11,8 @@ namespace gnomon {
 
 // The content of report.json:
 //   metrics  [{name, definition, unit}]  those that some row has; less is better in each
-//   places   [{scene, size, camera, device, driver, samples, frames, baseline, rows: [id], fronts: {metric:
-//   [id]}, steady_fronts: {metric: [id]}}]
+//   places   [{scene, size, camera, light_scale, device, driver, samples, frames, baseline, rows: [id],
+//   fronts: {metric: [id]}, steady_fronts: {metric: [id]}}]
 //            what can be compared with one another; `fronts`: the Pareto fronts of that metric and `ms`, and
 //            of that metric and `steady_ms`
 //   rows     [{id, place, technique, label, baseline, ms, steady_ms, ratio, ratio_to, errors: {metric:
@@ -22,8 +22,8 @@ namespace gnomon {
 //            times can be compared though the machine became slower or quicker between them; `ms` where there
 //            is no ratio
 //   sweeps   [{scene, technique, parameter, fixed, rows: [id], x: [..], ms: fit, errors: {metric: fit}}]
-//            rows that differ in one numeric variable, or in the output's size (`output_pixels`), only; a fit
-//            is {exponent, factor, r2, n} or null
+//            rows that differ in one numeric variable, in the output's size (`output_pixels`), or in the
+//            lights' (`light_scale`), only; a fit is {exponent, factor, r2, n} or null
 //   failed   [{label, scene, size, status}]
 // Paths of images are absolute: `folder` of the row and what the row says.
 nlohmann::json report_data(const std::vector<ReportRow>& rows);

@@ -43,8 +43,9 @@ Image first_light(const Image& visibility) {
 
 // Of everything that the reference depends on as far as rows of one folder differ in it.
 std::string reference_name(const Row& row) {
-  const nlohmann::json identity = {row.scene.string(), row.size.width,        row.size.height,
-                                   row.camera,         row.reference_samples, row.sequence.has_value()};
+  const nlohmann::json identity = {
+      row.scene.string(), row.size.width,        row.size.height,         row.camera,
+      row.light_scale,    row.reference_samples, row.sequence.has_value()};
   return row.scene.stem().string() + "-" + canonical_hash(identity);
 }
 

@@ -76,6 +76,11 @@ std::string value_text(const json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+std::string light_scale_text(const json& row) {
+  const double scale = figure_at(row, "/light_scale").value_or(1);
+  return scale == 1 ? "" : fmt::format(", light scale {:g}", scale);
+}
+
 std::string row_label(const json& row) {
   std::string text = row.contains("graph") ? value_text(row["graph"]) : "?";
   const auto set = row.find("set");

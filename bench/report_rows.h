@@ -24,6 +24,8 @@ bool is_ok(const nlohmann::json& row);
 std::optional<double> figure_at(const nlohmann::json& row, const std::string& pointer);
 // "pcf kernel=15 shadow_map=512": the graph and what was set.
 std::string row_label(const nlohmann::json& row);
+// ", light scale 0.5"; nothing where the lights are as in the scene.
+std::string light_scale_text(const nlohmann::json& row);
 // Text of a variable's value, as after --set.
 std::string value_text(const nlohmann::json& value);
 

@@ -140,6 +140,7 @@ json to_json(const Row& row) {
       {"set", to_json(row.set)},
       {"size", {row.size.width, row.size.height}},
       {"camera", row.camera},
+      {"light_scale", row.light_scale},
       {"camera_z", row.reversed_z ? "reversed" : "standard"},
       {"alias", row.alias},
       {"keep_all", row.keep_all},

@@ -34,6 +34,7 @@ struct Row {
   Values vars, set;        // all of them; those that were set
   Extent size;             // pixels
   uint32_t camera = 0;
+  double light_scale = 1;  // as with_light_scale()
   bool reversed_z = true, alias = true, keep_all = false;
   uint32_t reference_samples = 0;  // 0: hard
   DeviceInfo device;

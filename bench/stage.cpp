@@ -9,6 +9,7 @@
 #include "bench/sequence.h"
 #include "bench/truth.h"
 #include "engine/animation.h"
+#include "engine/area_light.h"
 #include "engine/error.h"
 #include "engine/image.h"
 
@@ -130,14 +131,14 @@ class DeviceStage final : public Stage {
 
 StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& cache, const Tell& progress,
                          const fs::path& out) {
-  return [=](const Suite& suite, const fs::path& file, Extent size) -> std::unique_ptr<Stage> {
-    auto scene = std::make_shared<const Scene>(load_scene(file));
+  return [=](const Suite& suite, const SuitePlace& place) -> std::unique_ptr<Stage> {
+    auto scene = std::make_shared<const Scene>(with_light_scale(load_scene(place.scene), place.light_scale));
     if (suite.camera >= scene->cameras.size())
       fail(fmt::format("camera {} does not exist: the scene has {}", suite.camera, scene->cameras.size()),
-           file.string());
+           place.scene.string());
     ReferenceSettings reference;
-    reference.width = size.width;
-    reference.height = size.height;
+    reference.width = place.size.width;
+    reference.height = place.size.height;
     reference.samples = suite.samples;
     reference.camera = suite.camera;
     if (progress)
@@ -145,8 +146,8 @@ StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& 
         progress(share, fmt::format("{}: reference {:.0f} %", scene->name, 100 * share));
       };
     RenderSettings settings;
-    settings.width = size.width;
-    settings.height = size.height;
+    settings.width = place.size.width;
+    settings.height = place.size.height;
     settings.camera = suite.camera;
     settings.memory = suite.memory;
     settings.frame_seconds = 1.0 / suite.fps;

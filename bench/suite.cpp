@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr long long max_side = 16384;  // pixels; the device's own limit is checked when it is opened
+constexpr double max_light_scale = 1e6;
 constexpr std::string_view scenes_variable = "$GNOMON_SCENES";
 
 struct Reading {
@@ -139,8 +140,31 @@ std::vector<Extent> read_sizes(Reading& reading, const json* size, const std::st
   return sizes;
 }
 
-void add_configs(Reading& reading, const std::string& name, const json* set, const std::vector<Extent>& sizes,
-                 size_t entry, const std::string& place) {
+std::vector<double> read_light_scales(Reading& reading, const json* scale, const std::string& place,
+                                      const std::vector<double>& standard) {
+  if (scale == nullptr) return standard;
+  std::vector<double> scales;
+  for (const json& one : scale->is_array() ? *scale : json::array({*scale})) {
+    if (!one.is_number() || !(one.get<double>() >= 0 && one.get<double>() <= max_light_scale))
+      reading.problems.add(
+          fmt::format("light scale {}: must be a number in 0..{:g}", one.dump(), max_light_scale),
+          reading.file, place, "\"light_scale\": [0, 0.5, 1, 2]");
+    else if (std::find(scales.begin(), scales.end(), one.get<double>()) == scales.end())
+      scales.push_back(one.get<double>());
+  }
+  if (scale->is_array() && scale->empty())
+    reading.problems.add("'light_scale' is an empty list", reading.file, place);
+  return scales;
+}
+
+// Where configurations are measured.
+struct Measured {
+  std::vector<Extent> sizes;
+  std::vector<double> light_scales;
+};
+
+void add_configs(Reading& reading, const std::string& name, const json* set, const Measured& at, size_t entry,
+                 const std::string& place) {
   fs::path file;
   std::vector<Values> combinations{{}};
   Problems found;
@@ -151,7 +175,8 @@ void add_configs(Reading& reading, const std::string& name, const json* set, con
   std::set<std::string> told;  // the combinations of one sweep share most of their mistakes
   for (const Values& values : combinations) {
     try {
-      reading.suite.configs.push_back({load_graph(find_graph(name), values), values, entry, sizes, 0});
+      reading.suite.configs.push_back(
+          {load_graph(find_graph(name), values), values, entry, at.sizes, at.light_scales, 0});
     } catch (const Error& error) {
       for (const Problem& problem : error.problems()) {
         if (!told.insert(to_string(problem)).second) continue;
@@ -169,19 +194,21 @@ void read_graphs(Reading& reading, const json* graphs, const std::string& place)
                          "[\"shadow_mapping\"]");
     return;
   }
+  const Measured standard{reading.suite.sizes, reading.suite.light_scales};
   for (size_t i = 0; i < graphs->size(); ++i) {
     const json& entry = (*graphs)[i];
     const std::string here = fmt::format("{}/{}", place, i);
     if (entry.is_string()) {
-      add_configs(reading, entry.get<std::string>(), nullptr, reading.suite.sizes, i, here);
+      add_configs(reading, entry.get<std::string>(), nullptr, standard, i, here);
     } else if (entry.is_object()) {
       ObjectReader object(entry, reading.file, here, reading.problems);
       const std::string name = object.required_text("name");
       const json* set = object.find("set");
-      const auto sizes =
-          read_sizes(reading, object.find("size"), object.place_of("size"), reading.suite.sizes);
+      const Measured at{read_sizes(reading, object.find("size"), object.place_of("size"), standard.sizes),
+                        read_light_scales(reading, object.find("light_scale"), object.place_of("light_scale"),
+                                          standard.light_scales)};
       object.finish();
-      if (!name.empty()) add_configs(reading, name, set, sizes, i, here);
+      if (!name.empty()) add_configs(reading, name, set, at, i, here);
     } else {
       reading.problems.add("a graph must be a name or {\"name\": ..., \"set\": {...}}", reading.file, here);
     }
@@ -238,6 +265,12 @@ uint32_t read_count(ObjectReader& object, Problems& problems, const std::string&
   return static_cast<uint32_t>(value);
 }
 
+template <class T>
+void add_missing(std::vector<T>& all, const std::vector<T>& more) {
+  for (const T& one : more)
+    if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+}
+
 std::string read_whole(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) fail("is a folder, not a suite file", file.string());
@@ -265,6 +298,8 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
   object.find("comment");
   read_scenes(reading, object.find("scenes"), object.place_of("scenes"));
   suite.sizes = read_sizes(reading, object.find("size"), object.place_of("size"), {{1280, 720}});
+  suite.light_scales = read_light_scales(reading, object.find("light_scale"), object.place_of("light_scale"),
+                                         suite.light_scales);
   suite.camera = read_count(object, problems, file.string(), "camera", 0, 0, 1000);
   suite.warmup = read_count(object, problems, file.string(), "warmup", suite.warmup, 1, 1000);
   suite.repeat = read_count(object, problems, file.string(), "repeat", suite.repeat, 1, 100000);
@@ -309,9 +344,13 @@ Suite parse_suite(const std::string& text, const fs::path& file) {
 
 std::vector<Extent> all_sizes(const Suite& suite) {
   std::vector<Extent> all = suite.sizes;
-  for (const SuiteConfig& config : suite.configs)
-    for (const Extent& size : config.sizes)
-      if (std::find(all.begin(), all.end(), size) == all.end()) all.push_back(size);
+  for (const SuiteConfig& config : suite.configs) add_missing(all, config.sizes);
+  return all;
+}
+
+std::vector<double> all_light_scales(const Suite& suite) {
+  std::vector<double> all = suite.light_scales;
+  for (const SuiteConfig& config : suite.configs) add_missing(all, config.light_scales);
   return all;
 }
 

@@ -12,11 +12,12 @@ namespace gnomon {
 
 // One technique with one combination of swept variables.
 struct SuiteConfig {
-  Graph graph;                // variables resolved
-  Values set;                 // what the suite sets, this combination
-  size_t entry = 0;           // index into "graphs"
-  std::vector<Extent> sizes;  // pixels: its own, or the suite's
-  size_t baseline = 0;        // index of the configuration that this one is compared with
+  Graph graph;                               // variables resolved
+  Values set;                                // what the suite sets, this combination
+  size_t entry = 0;                          // index into "graphs"
+  std::vector<Extent> sizes;                 // pixels: its own, or the suite's
+  std::vector<double> light_scales = {1.0};  // as with_light_scale(): its own, or the suite's
+  size_t baseline = 0;                       // index of the configuration that this one is compared with
 };
 
 struct Suite {
@@ -24,6 +25,7 @@ struct Suite {
   std::string name;                           // file name without folder and extension
   std::vector<std::filesystem::path> scenes;  // existing files, in the suite's order, each once
   std::vector<Extent> sizes;                  // pixels: of the graphs without sizes of their own
+  std::vector<double> light_scales = {1.0};   // of the graphs without any of their own
   std::string baseline;                       // name of a graph of the suite
   std::vector<SuiteConfig> configs;           // sweeps expanded
   uint32_t camera = 0;
@@ -43,6 +45,7 @@ struct Suite {
 
 // Every size at which some graph is measured, each once: the suite's first.
 std::vector<Extent> all_sizes(const Suite& suite);
+std::vector<double> all_light_scales(const Suite& suite);
 
 // Reads and checks a suite and the graphs it names; all problems at once (Error). Scenes are paths relative
 // to the suite file, absolute ones, patterns (dragon*.glb), folders (every .glb and .gltf in them), or begin

@@ -9,6 +9,8 @@
 #include <optional>
 #include <set>
 
+#include "bench/report_rows.h"
+
 namespace gnomon {
 namespace {
 
@@ -96,7 +98,7 @@ std::vector<Group> group(const std::vector<json>& rows) {
   const auto shown = varying(rows);
   std::vector<Group> groups;
   for (const json& row : rows) {
-    const std::string title = fmt::format("{}, {}", row.value("scene", "?"), size_of(row));
+    const std::string title = row.value("scene", "?") + ", " + size_of(row) + light_scale_text(row);
     auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.title == title; });
     if (found == groups.end()) found = groups.insert(groups.end(), Group{title, {}});
     found->lines.push_back(line_of(row, technique_of(row, shown)));

@@ -260,6 +260,23 @@ std::vector<glm::dvec2> area_points(const AreaLight& area, uint32_t n, AreaPatte
   return grid_points(area, n, pattern == AreaPattern::grid_corners);
 }
 
+Scene with_light_scale(Scene scene, double factor) {
+  if (!(factor >= 0 && std::isfinite(factor)))
+    fail(fmt::format("light scale {:g}: must be a finite number, at least 0", factor), scene.file.string());
+  if (factor == 1) return scene;
+  for (Light& light : scene.lights) {
+    if (!light.area) continue;
+    AreaLight& area = *light.area;
+    area.width *= factor, area.height *= factor;
+    for (glm::dvec2& corner : area.outline) corner *= factor;
+    if (!std::isfinite(area.width) || !std::isfinite(area.height))
+      fail(fmt::format("light scale {:g} makes light '{}' infinite", factor, light.name),
+           scene.file.string());
+    if (area.width == 0 || area.height == 0) light.area.reset();
+  }
+  return scene;
+}
+
 glm::dvec2 concentric_disc(const glm::dvec2& u) {
   const glm::dvec2 a = 2.0 * u - 1.0;
   if (a == glm::dvec2(0.0)) return a;

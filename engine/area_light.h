@@ -68,6 +68,10 @@ enum class AreaPattern {
 std::vector<glm::dvec2> area_points(const AreaLight& area, uint32_t n, AreaPattern pattern,
                                     uint32_t seed = 0);
 
+// The scene with every light's area `factor` times as wide and as high; 0: all are points. Error when the
+// factor is negative or not finite, or a light becomes larger than any number.
+Scene with_light_scale(Scene scene, double factor);
+
 // Maps [0, 1] x [0, 1] to the unit disc; keeps relative areas and neighbourhoods, so that a stratified set
 // stays one (Shirley and Chiu 1997, "A low distortion map between disk and square").
 glm::dvec2 concentric_disc(const glm::dvec2& u);

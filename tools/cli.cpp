@@ -10,6 +10,7 @@
 #include <new>
 
 #include "bench/run_json.h"
+#include "engine/area_light.h"
 #include "engine/config.h"
 #include "engine/error.h"
 #include "engine/graph.h"
@@ -171,10 +172,19 @@ fs::path find_scene(const std::string& name_or_file) {
   fail("no such scene file", name_or_file, {}, did_you_mean(name_or_file, names));
 }
 
-std::shared_ptr<const Scene> open_scene(const std::string& name_or_file) {
-  auto scene = std::make_shared<const Scene>(load_scene(find_scene(name_or_file)));
+std::shared_ptr<const Scene> open_scene(const std::string& name_or_file, double light_scale) {
+  auto scene =
+      std::make_shared<const Scene>(with_light_scale(load_scene(find_scene(name_or_file)), light_scale));
   for (const std::string& message : scene->warnings.messages) warn(message);
   return scene;
+}
+
+void add_light_scale(CLI::App& command, double& light_scale) {
+  command
+      .add_option("--light-scale", light_scale,
+                  "factor of the size of the scene's area lights; 0: all shine from their centre")
+      ->type_name("X")
+      ->capture_default_str();
 }
 
 void add_device_options(CLI::App& command, DeviceFlags& flags) {

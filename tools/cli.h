@@ -56,8 +56,9 @@ bool parse_camera_z(const std::string& text);
 const Camera& camera_of(const Scene& scene, uint32_t index);
 // NAME of assets/scenes (with or without .glb) or FILE.
 std::filesystem::path find_scene(const std::string& name_or_file);
-// Prints the scene's warnings to stderr.
-std::shared_ptr<const Scene> open_scene(const std::string& name_or_file);
+// Prints the scene's warnings to stderr. `light_scale`: as with_light_scale().
+std::shared_ptr<const Scene> open_scene(const std::string& name_or_file, double light_scale = 1);
+void add_light_scale(CLI::App& command, double& light_scale);  // the option --light-scale
 
 struct DeviceFlags {
   std::string part;

@@ -21,6 +21,7 @@ struct Options {
   std::vector<std::string> set;
   DeviceFlags device;
   uint32_t camera = 0, repeat = 5;
+  double light_scale = 1;
   bool plan = false;
 };
 
@@ -127,7 +128,7 @@ void explain_command(const Options& options) {
   const Values set = parse_set(options.set);
   parse_size(options.size);
   const Graph graph = load_graph(find_graph(options.graph), set);
-  const auto scene = open_scene(options.scene);
+  const auto scene = open_scene(options.scene, options.light_scale);
   const Plan plan = plan_of(*scene, graph, options);
   fmt::print("{} on {}, {}\n", graph.name, scene->name, options.size);
   std::vector<LeftOutPass> left_out;
@@ -167,6 +168,7 @@ void add_explain(CLI::App& app, int& status) {
           "frames measured, in turn with a run that keeps all; 0: none, and only whole passes are told")
       ->type_name("N")
       ->capture_default_str();
+  add_light_scale(*command, options->light_scale);
   command->add_flag("--plan", options->plan,
                     "print the compiled plan, too: resources, memory, barriers, segments");
   add_device_options(*command, options->device);

@@ -21,7 +21,7 @@ struct Options {
   std::string scene, size = "1280x720";
   std::filesystem::path out;
   uint32_t samples = 0, camera = 0;
-  double time = 0;
+  double time = 0, light_scale = 1;
 };
 
 void reference_command(const Options& options) {
@@ -36,7 +36,7 @@ void reference_command(const Options& options) {
   if (options.samples > max_samples)
     fail(fmt::format("{} samples: at most {}", options.samples, max_samples), {}, "--samples");
   if (!std::isfinite(options.time)) fail("the time is not a finite number", {}, "--time");
-  auto scene = open_scene(options.scene);
+  auto scene = open_scene(options.scene, options.light_scale);
   if (scene->animation) scene = std::make_shared<const Scene>(posed(*scene, options.time));
   camera_of(*scene, options.camera);
   Progress progress("reference " + scene->name, 5);
@@ -75,6 +75,7 @@ void add_reference(CLI::App& app, int& status) {
           "seconds of the scene's animations; before the first and after the last key frame nothing moves")
       ->type_name("S")
       ->capture_default_str();
+  add_light_scale(*command, options->light_scale);
   command->footer(
       R"(Channels: Y, light1.Y, ... visibility (0 umbra, 1 lit); domain, light1.domain, ... 0 where the
 error is counted, 1 no geometry, 2 faces away, 3 outside the light; Z depth along the view axis, P position

@@ -32,7 +32,7 @@ struct Options {
   fs::path out, json_file;
   DeviceFlags device;
   uint32_t camera = 0, repeat = 5, warmup = 2, frames = 0;
-  double fps = 30;
+  double fps = 30, light_scale = 1;
   bool no_alias = false, keep_all = false, error = false, write_frames = false;
 };
 
@@ -103,7 +103,7 @@ Job prepare(const Options& options) {
   job.write_frames = options.write_frames;
   const fs::path file = find_scene(options.scene);
   job.graph = load_graph(find_graph(options.graph), set);
-  job.scene = open_scene(file.string());
+  job.scene = open_scene(file.string(), options.light_scale);
   camera_of(*job.scene, options.camera);
   return job;
 }
@@ -289,6 +289,7 @@ int render_command(const Options& options) {
   row.set = parse_set(options.set);
   row.size = {job.settings.width, job.settings.height};
   row.camera = options.camera;
+  row.light_scale = options.light_scale;
   row.reversed_z = job.settings.reversed_z;
   row.alias = job.settings.alias;
   row.keep_all = job.settings.keep_all;
@@ -344,6 +345,7 @@ void add_options(CLI::App& command, Options& o) {
   command.add_option("--camera", o.camera, "index of the scene's camera")
       ->type_name("N")
       ->capture_default_str();
+  add_light_scale(command, o.light_scale);
   command.add_option("--camera-z", o.camera_z, "camera depth: reversed (1 near, 0 far) or standard")
       ->type_name("reversed|standard")
       ->capture_default_str();

@@ -188,8 +188,8 @@ class HarnessTest : public testing::Test {
     }
   };
   StageMaker stages() {
-    return [this](const Suite&, const fs::path& scene, Extent) -> std::unique_ptr<Stage> {
-      if (scene.stem() == broken_scene_) fail("not a glTF file", scene.string());
+    return [this](const Suite&, const SuitePlace& place) -> std::unique_ptr<Stage> {
+      if (place.scene.stem() == broken_scene_) fail("not a glTF file", place.scene.string());
       return std::make_unique<MadeUpStage>(*this);
     };
   }
@@ -224,6 +224,20 @@ TEST_F(HarnessTest, RowHasTheStatedFields) {
   EXPECT_EQ(row["passes"][0]["id"], "shade");
   EXPECT_EQ(row["passes"][0]["gpu_ms"]["isolated"]["median"], 1.5);
   EXPECT_EQ(row["ratio"]["median"], 1);
+}
+
+TEST_F(HarnessTest, LightScalesArePlacesOfTheirOwn) {
+  add("other", 0);
+  ms_ = {{"base", {2}}, {"other", {4}}};
+  suite_.scenes.resize(1);
+  suite_.configs[1].light_scales = {1, 0.5};
+  run();
+  ASSERT_EQ(rows().size(), 3u);
+  EXPECT_EQ(rows()[1]["light_scale"], 1);
+  EXPECT_EQ(rows()[2]["light_scale"], 0.5);
+  EXPECT_EQ(rows()[2]["graph"], "other");
+  EXPECT_EQ(rows()[2]["ratio"]["median"], 2);  // the baseline runs there, too, for the ratio alone
+  EXPECT_NE(rows()[1]["key"], rows()[2]["key"]);
 }
 
 TEST_F(HarnessTest, RatioIsTheMedianOverPairs) {

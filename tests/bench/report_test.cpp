@@ -140,6 +140,17 @@ TEST(Report, OutputSizesAreASweepOfTheirOwn) {
   EXPECT_NEAR(report["sweeps"][0]["ms"]["exponent"].get<double>(), 1, 1e-9);
 }
 
+TEST(Report, LightSizesAreASweepBetweenPlaces) {
+  json half = row("pcf", 512, 10, 0.2), twice = row("pcf", 512, 20, 0.8);
+  half["light_scale"] = 0.5, twice["light_scale"] = 2;
+  const json report = report_of({twice, row("pcf", 512, 10, 0.4), half});
+  ASSERT_EQ(report["places"].size(), 3u);
+  ASSERT_EQ(report["sweeps"].size(), 1u);
+  EXPECT_EQ(report["sweeps"][0]["parameter"], "light_scale");
+  EXPECT_EQ(report["sweeps"][0]["x"], (json{0.5, 1, 2}));
+  EXPECT_NEAR(report["sweeps"][0]["errors"]["rmse"]["exponent"].get<double>(), 1, 1e-9);
+}
+
 TEST(Report, CsvHasALinePerRowAndQuotes) {
   json odd = row("p,c\"f", 512, 10, 0.2);
   const std::string csv = report_csv(report_of({odd}));

@@ -49,6 +49,20 @@ class SuiteTest : public testing::Test {
   fs::path folder_;
 };
 
+TEST_F(SuiteTest, LightsMayBeScaled) {
+  const Suite suite = parse(R"({ "schema": 1, "scenes": ["a.glb"], "light_scale": 2,
+    "graphs": ["shadow_mapping", { "name": "rbsm_conservative", "light_scale": [0, 0.5, 2] }] })");
+  EXPECT_EQ(suite.configs[0].light_scales, std::vector<double>{2});
+  EXPECT_EQ(suite.configs[1].light_scales, (std::vector<double>{0, 0.5, 2}));
+  EXPECT_EQ(all_light_scales(suite), (std::vector<double>{2, 0, 0.5}));
+  for (const char* wrong : {"-1", "\"2\"", "[]", "[1, null]", "1e300"})
+    EXPECT_NE(problems(std::string(R"({ "schema": 1, "scenes": ["a.glb"], "light_scale": )") + wrong +
+                       R"(, "graphs": ["shadow_mapping"] })")
+                  .find("/light_scale"),
+              std::string::npos)
+        << wrong;
+}
+
 TEST_F(SuiteTest, GraphsMayHaveSizesOfTheirOwn) {
   const Suite suite = parse(R"({ "schema": 1, "scenes": ["a.glb"], "size": [64, 36],
     "graphs": ["shadow_mapping", { "name": "rbsm_conservative", "size": [[32, 18], [64, 36]] }] })");

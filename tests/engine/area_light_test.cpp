@@ -242,6 +242,24 @@ TEST(AreaEmission, IsLinearLight) {
   EXPECT_EQ(mean_emission(w.scene, w.area), glm::dvec3(1.0));
 }
 
+TEST(LightScale, ScalesEveryAreaAndNothingElse) {
+  Scene scene;
+  scene.lights.resize(3);
+  scene.lights[0].area = AreaLight{AreaLight::Shape::disc, 2, 4, {}, {}};
+  scene.lights[1].area = polygon_light({{-1, -1}, {1, -1}, {0, 1}});
+  const Scene twice = with_light_scale(scene, 2);
+  EXPECT_EQ(twice.lights[0].area->width, 4);
+  EXPECT_EQ(twice.lights[0].area->height, 8);
+  EXPECT_EQ(*twice.lights[1].area, polygon_light({{-2, -2}, {2, -2}, {0, 2}}));
+  EXPECT_FALSE(twice.lights[2].area);
+  EXPECT_EQ(twice.lights[0].intensity, scene.lights[0].intensity);
+  EXPECT_EQ(*with_light_scale(scene, 1).lights[0].area, *scene.lights[0].area);
+  for (const Light& light : with_light_scale(scene, 0).lights) EXPECT_FALSE(light.area);
+  EXPECT_THROW(with_light_scale(scene, -1), Error);
+  EXPECT_THROW(with_light_scale(scene, std::nan("")), Error);
+  EXPECT_THROW(with_light_scale(scene, 1e308), Error);
+}
+
 TEST(AreaEmission, CellsAreExactMeans) {
   for (const bool nearest : {true, false}) {
     Window w(nearest);

@@ -124,7 +124,7 @@ TEST_F(ReportPage, IsOneFileWithDataBesideIt) {
   EXPECT_EQ(page.find("src=\"http"), std::string::npos);
   EXPECT_EQ(page.find("narrower than a pixel</b></script>"), std::string::npos);
   EXPECT_EQ(json::parse(read_text(folder_ / "out" / "report.json"))["rows"].size(), 4u);
-  EXPECT_NE(read_text(folder_ / "out" / "report.csv").find("square,8,2,none,exact,exact,false,50"),
+  EXPECT_NE(read_text(folder_ / "out" / "report.csv").find("square,8,2,1,none,exact,exact,false,50"),
             std::string::npos);
 }
 

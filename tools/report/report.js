@@ -40,6 +40,7 @@ class Report {
     const several = (key) => new Set(this.report.places.map((other) => other[key])).size > 1;
     return `${place.scene}, ${(place.size || []).join(' × ')}` +
         (place.frames ? `, ${place.frames} frames` : '') + (several('camera') ? `, camera ${place.camera}` : '') +
+        (several('light_scale') ? `, lights × ${place.light_scale}` : '') +
         (several('samples') ? `, ${place.samples} reference samples` : '') + (several('device') ? `, ${place.device}` : '');
   }
 
@@ -219,7 +220,7 @@ class Report {
         scales: {x: logAxis(''), y: logAxis('')},
         plugins: {
           legend: {position: 'bottom'},
-          tooltip: {callbacks: {title: () => '', label: (item) => `${item.dataset.label}: ${figure(item.raw.shown)} at ${figure(item.raw.x)}`}},
+          tooltip: {callbacks: {title: () => '', label: (item) => `${item.dataset.label}: ${figure(item.raw.shown)} at ${figure(item.raw.at)}`}},
         },
       },
     });
@@ -243,12 +244,13 @@ class Report {
     const sweeps = this.report.sweeps.filter(
         (sweep) => sweep.scene === this.get('sweep-scene').value && sweep.parameter === parameter);
     const name = (sweep) => sweep.technique + (sweep.fixed ? ` (${sweep.fixed})` : '');
+    const least = floorOf(sweeps.flatMap((sweep) => sweep.x));
     const draw = (chart, title, value, interval) => {
       const all = sweeps.flatMap((sweep) => sweep.rows.map((id) => value(rows[id])));
       const floor = floorOf(all.filter((number) => number !== undefined));
       chart.data.datasets = sweeps.map((sweep) => ({label: name(sweep), borderColor: this.colours[sweep.technique],
         backgroundColor: this.colours[sweep.technique], borderWidth: 2, pointRadius: 4,
-        data: sweep.rows.map((id, i) => ({x: sweep.x[i], y: Math.max(value(rows[id]), floor), shown: value(rows[id]),
+        data: sweep.rows.map((id, i) => ({x: Math.max(sweep.x[i], least), at: sweep.x[i], y: Math.max(value(rows[id]), floor), shown: value(rows[id]),
               yLow: (interval(rows[id]) || {}).low, yHigh: (interval(rows[id]) || {}).high}))
             .filter((point) => point.shown !== undefined)}));
       const shown = chart.data.datasets.flatMap((dataset) => dataset.data);
@@ -256,7 +258,8 @@ class Report {
         Object.assign(chart.options.scales.y, roundLimits(
             Math.min(...shown.map((p) => p.yLow > 0 ? Math.min(p.yLow, p.y) : p.y)),
             Math.max(...shown.map((p) => Math.max(p.yHigh ?? p.y, p.y)))));
-      chart.options.scales.x.title.text = parameter.replace('_', ' ');
+      chart.options.scales.x.title.text =
+          parameter.replace('_', ' ') + (sweeps.some((sweep) => sweep.x.includes(0)) ? ` (0 at ${figure(least)})` : '');
       chart.options.scales.y.title.text = title;
       chart.update();
     };
