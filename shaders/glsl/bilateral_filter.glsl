@@ -4,7 +4,9 @@
 
 shared float values[SPAN * LINES];
 shared vec3 positions[SPAN * LINES];
-shared uint receives[LINES * EDGE_WORDS];  // a bit a place
+const int BITS = 32;  // of a word
+const int WORDS = (SPAN + BITS - 1) / BITS;
+shared uint receives[LINES * WORDS];  // a bit a place
 
 const float SIGMAS = 2.0;  // of the Gaussian, in half a window
 
@@ -14,7 +16,7 @@ void load_part(Strip strip) {
     Receiving here = surface_at(pixel, strip.light, is_own(strip, place));
     values[place * LINES + line()] = source_at(pixel, strip.light);
     positions[place * LINES + line()] = here.position;
-    if (here.receives) atomicOr(receives[line() * EDGE_WORDS + place / BITS], 1u << uint(place % BITS));
+    if (here.receives) atomicOr(receives[line() * WORDS + place / BITS], 1u << uint(place % BITS));
   }
 }
 
@@ -24,7 +26,7 @@ float bilateral(int place, Receiving centre) {
   float sum = 0.0, weights = 0.0;
   for (int i = -int(ceil(width)); i <= int(ceil(width)); ++i) {
     int tap = place + i;
-    bool counts = i == 0 || (receives[line() * EDGE_WORDS + tap / BITS] >> uint(tap % BITS) & 1u) != 0u;
+    bool counts = i == 0 || (receives[line() * WORDS + tap / BITS] >> uint(tap % BITS) & 1u) != 0u;
     float off = dot(centre.normal, positions[tap * LINES + line()] - centre.position) / range;
     float along = float(i) / sigma, inside = clamp(width + 1.0 - abs(float(i)), 0.0, 1.0);
     float weight = i == 0 ? 1.0 : counts ? inside * exp(-0.5 * (along * along + off * off)) : 0.0;
@@ -35,17 +37,21 @@ float bilateral(int place, Receiving centre) {
   return clamp(sum / weights, 0.0, 1.0);
 }
 
-void main() {
-  Strip strip = strip_of_workgroup();
-  for (int i = int(gl_LocalInvocationIndex); i < LINES * EDGE_WORDS; i += LINES * PARTS) receives[i] = 0u;
-  barrier();
-  load_part(strip);
-  barrier();
-  int cell = part(), first = strip.reach + 1 + cell * CELL;
+void filter_cell(Strip strip, int cell) {
+  int first = strip.reach + 1 + cell * CELL;
   for (int place = first; place < first + (is_needed(strip, cell) ? CELL : 0); ++place) {
     ivec2 pixel = pixel_of(strip, place);
     Receiving here = surface_at(pixel, strip.light, false);
     float v = here.receives ? bilateral(place, here) : values[place * LINES + line()];
     store(pixel, strip.light, v);
   }
+}
+
+void main() {
+  Strip strip = strip_of_workgroup();
+  for (int i = int(gl_LocalInvocationIndex); i < LINES * WORDS; i += LINES * PARTS) receives[i] = 0u;
+  barrier();
+  load_part(strip);
+  barrier();
+  for (int cell = part(); cell < STRIP; cell += PARTS) filter_cell(strip, cell);
 }

@@ -12,7 +12,10 @@ layout(push_constant) uniform Push { int layer; float reach; } push;  // reach: 
 
 // Does the light's shadow map decide about `p` with normal `n`? What faces away is in shadow by itself, and what the map does not hold
 // is in none: no silhouette runs along there.
-bool is_mapped(vec3 p, vec3 n) { return faces_light(lights[push.layer], p, n) && in_map(lights[push.layer], p); }
+bool is_mapped(vec3 p, vec3 n) {
+  int light = light_of(push.layer);
+  return faces_light(lights[light], p, n) && in_map(light, p);
+}
 
 // The four pixels around a corner, in the order of textureGather: does one differ from `value`, lie on the surface through `p` and
 // belong to the map?

@@ -99,10 +99,17 @@ bool in_range(Light light, vec3 p) {
   return range == 0.0 || light.position.w == LIGHT_DIRECTIONAL || dot(d, d) <= range * range;
 }
 
-// Does the light's shadow map hold `p`? Beyond it nobody knows of shadows.
-bool in_map(Light light, vec3 p) {
-  if (light.faces.y != 1) return true;  // a point light's faces see everything
-  LightFace face = faces[light.faces.x];
+// The light of a layer of an image. A single one's loads are uniform wherever the layer's number comes from.
+int light_of(int layer) { return LIGHT_COUNT == 1 ? 0 : layer; }
+
+// Does the shadow map of a light, by its index, hold `p`? Beyond it nobody knows of shadows.
+bool in_map(int light, vec3 p) {
+#if FACE_COUNT == LIGHT_COUNT  // one each
+  LightFace face = faces[light];
+#else
+  if (lights[light].faces.y != 1) return true;  // a point light's faces see everything
+  LightFace face = faces[lights[light].faces.x];
+#endif
   return face_sees(face_project(face, face_space(face, vec4(p, 1.0))));
 }
 

@@ -11,18 +11,19 @@ struct Receiving {
   bool receives;          // geometry in the map that faces the light: the shadow map decides
 };
 
-// `encoded`: octahedral geometric normal.
-Receiving make_receiving(ivec2 pixel, float device_depth, vec2 encoded, int light) {
+// `encoded`: octahedral geometric normal. `layer`: the light's.
+Receiving make_receiving(ivec2 pixel, float device_depth, vec2 encoded, int layer) {
+  int light = light_of(layer);
   Receiving r;
   r.position = relative_position(pixel, device_depth);
   r.normal = octahedral_decode(encoded);
   r.depth = view_depth(device_depth);
-  r.receives = !is_background(device_depth) && faces_light(lights[light], r.position, r.normal) && in_map(lights[light], r.position);
+  r.receives = !is_background(device_depth) && faces_light(lights[light], r.position, r.normal) && in_map(light, r.position);
   return r;
 }
 
-Receiving receiving_at(ivec2 pixel, int light) {
-  return make_receiving(pixel, depth_at(pixel).x, geometric_at(pixel).xy, light);
+Receiving receiving_at(ivec2 pixel, int layer) {
+  return make_receiving(pixel, depth_at(pixel).x, geometric_at(pixel).xy, layer);
 }
 
 #endif

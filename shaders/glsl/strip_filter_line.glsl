@@ -4,15 +4,10 @@
 // What the pixels show is read from the G-buffer along x only, and kept in `surfaces` for the filter along y.
 #include "strip_filter.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;  // x: line of the strip; y: part of the line
+layout(local_size_x = 8, local_size_y = 4) in;  // x: line of the strip; y: part of the line
 
-const int LINES = 8, PARTS = 8;
+const int LINES = 8, PARTS = 4;
 const int SPAN = LENGTH + 2 * MAX_HALF + 2;   // places of a line at most; one spare at each end
-const int BITS = 32;                          // of a word
-const int EDGE_WORDS = SPAN / BITS + 2;       // with one spare at each end
-
-// Bit p of a line, after its first word: there is an edge between its places p - 1 and p.
-shared uint edges[LINES * EDGE_WORDS];
 
 #ifdef ALONG_Y_AXIS
 const ivec2 ALONG = ivec2(0, 1);
@@ -115,16 +110,4 @@ Receiving surface_at(ivec2 pixel, int light, bool keep) {
 bool is_own(Strip strip, int place) {
   int offset = place - strip.reach - 1;
   return offset >= 0 && offset < LENGTH && is_needed(strip, offset / CELL);
-}
-
-// Between neighbouring pixels: each may see the other's surface edge-on, so either plane will do.
-bool edge_between(Receiving a, Receiving b) {
-  if (!a.receives || !b.receives) return true;
-  float tolerance = params.depth_tolerance;
-  return !same_surface(a.position, a.normal, b.position, a.depth, tolerance) &&
-         !same_surface(b.position, b.normal, a.position, b.depth, tolerance);
-}
-
-void clear_edges() {
-  for (int i = int(gl_LocalInvocationIndex); i < LINES * EDGE_WORDS; i += LINES * PARTS) edges[i] = 0u;
 }
