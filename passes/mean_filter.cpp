@@ -10,6 +10,8 @@ class MeanFilter : public StripFilter {
     d.summary("Averages visibility over each pixel's surroundings on its own surface, in place.");
     d.cite("Macedo 2018, ch. 4.2.3, eq. 4.4-4.5");
     StripFilter::declare(d);
+    d.number("depth_tolerance", 1e-3, 0, 1, "of the view depth",
+             "distance from each other's tangent plane at which neighbouring pixels still are one surface");
   }
 };
 

@@ -64,8 +64,6 @@ void StripFilter::declare(Declaration& d) const {
       "of the window at the reference depth; it goes with 1/depth, up to 63 pixels (Macedo 2018, eq. 4.4)");
   d.number("reference_depth", 0, 0, 1e9, "world units",
            "view depth at which the window has its width; 0: the camera's distance to the scene's middle");
-  d.number("depth_tolerance", 1e-3, 0, 1, "of the view depth",
-           "distance from each other's tangent plane at which neighbouring pixels still are one surface");
   d.optional_input_buffer(
       "tiles", Access::storage_read,
       "tiles of 16x16 pixels outside of which visibility is plain: without them, it is looked for");

@@ -6,6 +6,7 @@ import pathlib
 import sys
 
 from selenium import webdriver
+from selenium.common.exceptions import TimeoutException
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -100,8 +101,11 @@ def main():
         read_a_point(driver)
         move_slider(driver)
         driver.set_window_size(400, 800)  # a phone
-        wide = driver.execute_script("return document.documentElement.scrollWidth - window.innerWidth")
-        expect(wide <= 0, f"the page is {wide} pixels wider than a phone")
+        wide = lambda: driver.execute_script("return document.documentElement.scrollWidth - window.innerWidth")
+        try:  # the charts are drawn anew when the window has changed
+            WebDriverWait(driver, SECONDS).until(lambda _: wide() <= 0)
+        except TimeoutException:
+            expect(False, f"the page is {wide()} pixels wider than a phone")
         # Reading canvases back, as this script does, gives a warning of its own.
         log = [entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
         expect(not log, f"the console says {log}")
