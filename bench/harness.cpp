@@ -7,7 +7,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <tuple>
 
 #include "bench/results.h"
 #include "engine/config.h"
@@ -128,9 +127,10 @@ class SuiteRun {
   }
 
   static bool runs_at(const SuiteConfig& config, const SuitePlace& place) {
-    const auto& [sizes, scales] = std::tie(config.sizes, config.light_scales);
-    return std::find(sizes.begin(), sizes.end(), place.size) != sizes.end() &&
-           std::find(scales.begin(), scales.end(), place.light_scale) != scales.end();
+    const auto holds = [](const auto& all, const auto& one) {
+      return std::find(all.begin(), all.end(), one) != all.end();
+    };
+    return holds(config.sizes, place.size) && holds(config.light_scales, place.light_scale);
   }
 
   void plan() {

@@ -222,14 +222,15 @@ json others_of(const json& row, json place, const std::string& parameter) {
 }
 
 std::string fixed_text(const json& row, const json& place, const std::string& parameter) {
-  std::string text;
+  std::vector<std::string> parts;
   if (parameter != "output_pixels" && place["size"].is_array() && place["size"].size() == 2)
-    text = fmt::format("{}x{}", place["size"][0].dump(), place["size"][1].dump());
-  if (parameter != "light_scale") text += light_scale_text(place);
+    parts.push_back(fmt::format("{}x{}", place["size"][0].dump(), place["size"][1].dump()));
+  if (parameter != "light_scale" && place["light_scale"] != 1)
+    parts.push_back(fmt::format("light_scale={}", value_text(place["light_scale"])));
   if (row["set"].is_object())
     for (const auto& [name, value] : row["set"].items())
-      if (name != parameter) text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value_text(value));
-  return text;
+      if (name != parameter) parts.push_back(fmt::format("{}={}", name, value_text(value)));
+  return fmt::format("{}", fmt::join(parts, " "));
 }
 
 json sweep(const json& rows, const json& place, const std::string& parameter, std::vector<size_t> ids,

@@ -46,13 +46,16 @@ void sum_part(Strip strip) {
 // There are none beyond the line.
 uint edges_of(int part) { return part >= 0 && part < PARTS ? edges[part * LINES + line()] : 0u; }
 
-// `first`: place of the cell's first pixel.
-void load_line(int first) {
+void load_sums() {
   uint sum = 0u;
   for (int p = 0; p < PARTS; ++p) {
     before_part[p] = sum;
     sum += totals[p * LINES + line()];
   }
+}
+
+// `first`: place of the cell's first pixel.
+void load_edges(int first) {
   for (int i = 0; i < 4; ++i) edge_window[i] = edges_of(first / PART + i - 1);
 }
 
@@ -93,7 +96,7 @@ float mean(int place, int first, float half_width) {
 void filter_cell(Strip strip, int cell) {
   int first = strip.reach + 1 + cell * CELL;
   bool needed = is_needed(strip, cell), filtered = needed && changes_along(strip, cell);
-  load_line(first);
+  load_edges(first);
   for (int place = first; place < first + (filtered ? CELL : 0); ++place)
     store(pixel_of(strip, place), strip.light, mean(place, first, half_width(depths[place * LINES + line()])));
   for (int place = first; place < first + (needed && !filtered ? CELL : 0); ++place) {
@@ -106,5 +109,6 @@ void main() {
   Strip strip = strip_of_workgroup();
   sum_part(strip);
   barrier();
+  load_sums();
   for (int cell = part(); cell < STRIP; cell += PARTS) filter_cell(strip, cell);
 }
