@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "bench/checkpoint.h"
 #include "bench/results.h"
 #include "engine/config.h"
 #include "engine/error.h"
@@ -20,6 +21,13 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 struct PlaceToMeasure : SuitePlace {
+  std::vector<size_t> configs;
+  std::set<size_t> finished;  // of these, in the run that this one resumes
+};
+
+// Techniques that are measured in turn.
+struct Chunk {
+  size_t baseline = 0;
   std::vector<size_t> configs;
 };
 
@@ -80,7 +88,8 @@ class SuiteRun {
       : suite_(suite),
         options_(options),
         make_stage_(make_stage),
-        file_(results_file(options), options.resume) {
+        file_(results_file(options), options.resume),
+        checkpoint_(options.out / "interrupted.jsonl", options.resume) {
     if (options.resume) finished_ = finished_keys(file_.path());
     write_text(options.out / "suite.json", suite_as_run().dump(2) + "\n");
     plan();
@@ -146,13 +155,17 @@ class SuiteRun {
     for (size_t i = 0; i < suite_.configs.size(); ++i) {
       if (!runs_at(suite_.configs[i], at)) continue;
       if (index++ % options_.shards != options_.shard - 1) continue;
-      if (finished_.count(row_of(suite_, options_, at, suite_.configs[i]).key) != 0)
-        ++result_.resumed;
-      else
-        place.configs.push_back(i);
+      place.configs.push_back(i);
+      if (finished_.count(key_of(at, i)) != 0) place.finished.insert(i);
     }
-    total_ += place.configs.size();
-    if (!place.configs.empty()) places_.push_back(std::move(place));
+    const size_t missing = place.configs.size() - place.finished.size();
+    result_.resumed += place.finished.size();
+    total_ += missing;
+    if (missing > 0) places_.push_back(std::move(place));
+  }
+
+  std::string key_of(const SuitePlace& place, size_t config) const {
+    return row_of(suite_, options_, place, suite_.configs[config]).key;
   }
 
   void report(const std::string& note, double part = 0) const {
@@ -177,33 +190,39 @@ class SuiteRun {
       stage = make_stage_(suite_, place);
     } catch (const std::exception& error) {
       for (const size_t config : place.configs) {
+        if (place.finished.count(config) != 0) continue;
         Row row = row_of(suite_, options_, place, suite_.configs[config]);
         row.status = std::string("error: ") + error.what();
         write(row);
       }
       return;
     }
-    for (const auto& [baseline, configs] : by_baseline(place)) {
-      const size_t step = std::max<size_t>(1, options_.max_alive - 1);
-      for (size_t first = 0; first < configs.size(); first += step) {
-        const size_t last = std::min(configs.size(), first + step);
-        run_chunk(place, *stage, baseline, {configs.begin() + long(first), configs.begin() + long(last)});
-      }
-    }
+    for (const Chunk& chunk : chunks_of(place)) run_chunk(place, *stage, chunk);
   }
 
   // Techniques with the same baseline are measured together. The baseline itself first, when it is to be
-  // measured.
-  std::map<size_t, std::vector<size_t>> by_baseline(const PlaceToMeasure& place) const {
+  // measured. What is finished counts, so that a resumed suite has the same chunks.
+  std::vector<Chunk> chunks_of(const PlaceToMeasure& place) const {
     std::map<size_t, std::vector<size_t>> groups;
     for (const size_t config : place.configs) {
       std::vector<size_t>& group = groups[suite_.configs[config].baseline];
-      if (suite_.configs[config].baseline == config)
-        group.insert(group.begin(), config);
-      else
-        group.push_back(config);
+      group.insert(suite_.configs[config].baseline == config ? group.begin() : group.end(), config);
     }
-    return groups;
+    std::vector<Chunk> chunks;
+    const size_t step = std::max<size_t>(1, options_.max_alive - 1);
+    for (const auto& [baseline, configs] : groups)
+      for (size_t first = 0; first < configs.size(); first += step) {
+        const size_t last = std::min(configs.size(), first + step);
+        chunks.push_back({baseline, {configs.begin() + long(first), configs.begin() + long(last)}});
+      }
+    return chunks;
+  }
+
+  // Of what is measured in turn, in this run or in the one that it resumes.
+  std::string group_of(const SuitePlace& place, const Chunk& chunk) const {
+    json keys = {key_of(place, chunk.baseline)};
+    for (const size_t config : chunk.configs) keys.push_back(key_of(place, config));
+    return canonical_hash(keys);
   }
 
   struct Entry {
@@ -225,7 +244,7 @@ class SuiteRun {
     return entry;
   }
 
-  void measure(std::vector<Entry>& entries, Stage& stage, const std::string& scene) const {
+  void measure(std::vector<Entry>& entries, Stage& stage, const std::string& scene) {
     std::vector<Subject*> subjects;
     std::vector<Entry*> open_entries;
     RoundSettings settings{suite_.warmup, suite_.repeat, suite_.instrumented};
@@ -241,15 +260,21 @@ class SuiteRun {
     }
     settings.sequence = suite_.frames > 0;
     if (settings.sequence) settings.repeat = suite_.frames;
-    FrameHook on_frame;
-    if (settings.sequence)
-      on_frame = [&](size_t i, uint32_t index, const FrameTiming& timing) {
-        if (open_entries[i]->wanted)
-          stage.frame(suite_.configs[open_entries[i]->config], *subjects[i], index, timing.frame_ms);
-      };
+    // A sequence cannot be gone on with: what a frame shows depends on those before it.
+    std::vector<Samples> before;
+    for (const Entry* entry : open_entries)
+      if (!settings.sequence) before.push_back(checkpoint_.of(entry->row.key));
+    const auto on_frame = [&](size_t i, TimingMode mode, uint32_t index, const FrameTiming& timing) {
+      const Entry& entry = *open_entries[i];
+      if (!settings.sequence)
+        checkpoint_.keep(entry.row.key, mode, timing);
+      else if (entry.wanted && mode == TimingMode::none)
+        stage.frame(suite_.configs[entry.config], *subjects[i], index, timing.frame_ms);
+    };
     const std::string note = fmt::format("{}: {} techniques in turn", scene, subjects.size());
     std::vector<Samples> samples = run_rounds(
-        subjects, settings, [&](double part) { report(note, part * double(wanted)); }, on_frame);
+        subjects, settings, [&](double part) { report(note, part * double(wanted)); }, on_frame,
+        std::move(before));
     for (size_t i = 0; i < open_entries.size(); ++i) {
       open_entries[i]->row.harness_seconds["frames"] = seconds_of(samples[i]);
       if (!samples[i].error.empty()) open_entries[i]->row.status = "error: " + samples[i].error;
@@ -257,22 +282,28 @@ class SuiteRun {
     }
   }
 
-  void run_chunk(const SuitePlace& place, Stage& stage, size_t baseline, const std::vector<size_t>& configs) {
+  void run_chunk(const PlaceToMeasure& place, Stage& stage, const Chunk& chunk) {
     const std::string scene = place.scene.stem().string();
+    std::vector<size_t> missing;
+    for (const size_t config : chunk.configs)
+      if (place.finished.count(config) == 0) missing.push_back(config);
+    if (missing.empty()) return;
     std::vector<Entry> entries;
-    if (configs.front() != baseline) entries.push_back(open(place, stage, baseline, false));
-    for (const size_t config : configs) {
+    if (missing.front() != chunk.baseline) entries.push_back(open(place, stage, chunk.baseline, false));
+    for (const size_t config : missing) {
       report(fmt::format("{}: {}", scene, label(suite_.configs[config])));
       entries.push_back(open(place, stage, config, true));
     }
+    checkpoint_.begin(group_of(place, chunk));
     measure(entries, stage, scene);
     const std::vector<double> base_ms = entries.front().row.samples.frame_ms();
     for (Entry& entry : entries) {
       if (!entry.wanted) continue;
-      finish(stage, baseline, base_ms, entry);
+      finish(stage, chunk.baseline, base_ms, entry);
       write(entry.row);
       entry.subject.reset();
     }
+    checkpoint_.end();
   }
 
   void finish(Stage& stage, size_t baseline, const std::vector<double>& base_ms, Entry& entry) const {
@@ -292,6 +323,7 @@ class SuiteRun {
   const BenchOptions& options_;
   const StageMaker& make_stage_;
   ResultsFile file_;
+  Checkpoint checkpoint_;
   std::set<std::string> finished_;
   std::vector<PlaceToMeasure> places_;
   size_t total_ = 0;

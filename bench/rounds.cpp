@@ -20,26 +20,28 @@ using Frames = std::vector<FrameTiming> Samples::*;
 class Rounds {
  public:
   Rounds(const std::vector<Subject*>& subjects, const RoundSettings& settings,
-         const std::function<void(double)>& step, const FrameHook& frame)
+         const std::function<void(double)>& step, const FrameHook& frame, std::vector<Samples> before)
       : subjects_(subjects),
         settings_(settings),
         step_(step),
         frame_(frame),
         limit_ms_(settings.sequence ? 0 : 1e3 * settings.seconds),
-        all_(subjects.size()),
-        last_ms_(subjects.size(), 0) {}
+        all_(std::move(before)),
+        last_ms_(subjects.size(), 0) {
+    all_.resize(subjects.size());
+  }
 
   std::vector<Samples> run() {
     // One frame settles a mode that differs only in its time stamps.
     const uint32_t settle = settings_.instrumented > 0 && settings_.warmup > 0 ? 1 : 0;
     total_ = subjects_.size() *
              (settings_.warmup + settings_.repeat + 2 * size_t{settle + settings_.instrumented});
-    turns({TimingMode::none, settings_.warmup, 1, nullptr}, {});
-    measured({TimingMode::none, settings_.repeat, settings_.least, &Samples::plain}, frame_);
+    turns({TimingMode::none, settings_.warmup, 1, nullptr});
+    measured({TimingMode::none, settings_.repeat, settings_.least, &Samples::plain});
     for (const auto& [mode, frames] : {std::pair{TimingMode::overlapped, Frames(&Samples::overlapped)},
                                        std::pair{TimingMode::isolated, Frames(&Samples::isolated)}}) {
-      turns({mode, settle, 0, nullptr}, {});
-      measured({mode, settings_.instrumented, 1, frames}, {});
+      turns({mode, settle, 0, nullptr});
+      measured({mode, settings_.instrumented, 1, frames});
     }
     return std::move(all_);
   }
@@ -51,18 +53,18 @@ class Rounds {
     Frames frames = nullptr;         // nullptr: results are thrown away (warm-up)
   };
 
-  void measured(const Turns& turn, const FrameHook& hook) {
+  void measured(const Turns& turn) {
     if (settings_.sequence && turn.rounds > 0)
       for (Subject* subject : subjects_) subject->play();
-    turns(turn, hook);
+    turns(turn);
   }
 
-  void turns(const Turns& turn, const FrameHook& hook) {
+  void turns(const Turns& turn) {
     std::vector<double> spent_ms(subjects_.size(), 0);
     for (uint32_t round = 0; round < turn.rounds; ++round) {
       const std::vector<bool> takes_part = participants(turn, round, spent_ms);
       for (size_t i = 0; i < subjects_.size(); ++i) {
-        if (takes_part[i]) spent_ms[i] += last_ms_[i] = frame_of(i, turn, round, hook);
+        if (takes_part[i]) spent_ms[i] += last_ms_[i] = frame_of(i, turn, round);
         ++done_;
         if (step_) step_(double(done_) / double(total_));
       }
@@ -89,12 +91,15 @@ class Rounds {
   }
 
   // Milliseconds of wall-clock time.
-  double frame_of(size_t i, const Turns& turn, uint32_t round, const FrameHook& hook) {
+  double frame_of(size_t i, const Turns& turn, uint32_t round) {
+    std::vector<FrameTiming>* frames = turn.frames == nullptr ? nullptr : &(all_[i].*turn.frames);
+    if (frames != nullptr && round < frames->size()) return (*frames)[round].frame_ms;  // measured before
     try {
       FrameTiming timing = subjects_[i]->render(turn.mode);
       const double ms = timing.frame_ms;
-      if (hook) hook(i, round, timing);
-      if (turn.frames != nullptr) (all_[i].*turn.frames).push_back(std::move(timing));
+      if (frames == nullptr) return ms;
+      if (frame_) frame_(i, turn.mode, round, timing);
+      frames->push_back(std::move(timing));
       return ms;
     } catch (const std::exception& error) {
       all_[i].error = error.what();
@@ -129,8 +134,9 @@ std::vector<double> Samples::frame_ms() const { return pick(plain, &FrameTiming:
 std::vector<double> Samples::record_ms() const { return pick(plain, &FrameTiming::record_ms); }
 
 std::vector<Samples> run_rounds(const std::vector<Subject*>& subjects, const RoundSettings& settings,
-                                const std::function<void(double)>& step, const FrameHook& frame) {
-  return Rounds(subjects, settings, step, frame).run();
+                                const std::function<void(double)>& step, const FrameHook& frame,
+                                std::vector<Samples> before) {
+  return Rounds(subjects, settings, step, frame, std::move(before)).run();
 }
 
 }  // namespace gnomon

@@ -49,13 +49,15 @@ struct Samples {
   std::vector<double> record_ms() const;
 };
 
-// Called after each frame of the rounds without stamps, which may be read then: the subject's index, the
-// round's, and the time. What it throws counts as the technique's failure.
-using FrameHook = std::function<void(size_t, uint32_t, const FrameTiming&)>;
+// Called after each frame that counts, which may be read then: the subject's index, the round's of its mode,
+// and the time. What it throws counts as the technique's failure.
+using FrameHook = std::function<void(size_t, TimingMode, uint32_t, const FrameTiming&)>;
 
 // One Samples per subject, in order. `step` is called after each frame with the share done, 0..1; both may be
-// empty.
+// empty. `before`: empty, or of each subject the frames that an earlier run measured until it was
+// interrupted, which are not rendered again; not for sequences, whose frames depend on those before them.
 std::vector<Samples> run_rounds(const std::vector<Subject*>& subjects, const RoundSettings& settings,
-                                const std::function<void(double)>& step = {}, const FrameHook& frame = {});
+                                const std::function<void(double)>& step = {}, const FrameHook& frame = {},
+                                std::vector<Samples> before = {});
 
 }  // namespace gnomon

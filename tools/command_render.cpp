@@ -265,7 +265,9 @@ Images measure(const Job& job, const Options& options, Renderer& renderer, Outpu
   if (rounds.sequence) {
     rounds.repeat = job.frames;
     frames.emplace(job, renderer, folder);
-    hook = [&](size_t, uint32_t index, const FrameTiming& timing) { frames->read(index, timing.frame_ms); };
+    hook = [&](size_t, TimingMode mode, uint32_t index, const FrameTiming& timing) {
+      if (mode == TimingMode::none) frames->read(index, timing.frame_ms);
+    };
   }
   row.samples = run_rounds({subject.get()}, rounds, {}, hook).front();
   if (!row.samples.error.empty()) fail(row.samples.error, options.graph);

@@ -344,6 +344,146 @@ TEST_F(HarnessTest, ResumeAfterATornLineMeasuresOnlyWhatIsMissing) {
   EXPECT_EQ(rows()[1]["scene"], "two");
 }
 
+// Base, b and c take turns: a frame each to warm up, three rounds, a frame each to settle the stamps and one
+// of each mode. Interrupted after the second round's second frame, so that five frames are there already.
+class InterruptedTest : public HarnessTest {
+ protected:
+  void SetUp() override {
+    HarnessTest::SetUp();
+    add("b", 0);
+    add("c", 0);
+    ms_ = {{"base", {2}}, {"b", {4}}, {"c", {8}}};
+    suite_.scenes.resize(1);
+  }
+  void interrupt_after(const std::string& log) {
+    options_.progress = [this, log](double, const std::string&) {
+      if (log_ == log) throw std::runtime_error("interrupted");
+    };
+    EXPECT_THROW(run(), std::runtime_error);
+    options_.progress = {};
+    log_.clear();
+    options_.resume = true;
+    ms_ = {{"base", {20}}, {"b", {40}}, {"c", {80}}};
+  }
+  const fs::path& kept() { return kept_ = options_.out / "interrupted.jsonl"; }
+  fs::path kept_;
+};
+
+TEST_F(InterruptedTest, ResumeGoesOnInTheMiddleOfARound) {
+  interrupt_after(
+      "basebc"
+      "basebc"
+      "baseb");
+  EXPECT_EQ(rows().size(), 0u);
+  const BenchResult again = run();
+  EXPECT_EQ(again.measured, 3u);
+  EXPECT_EQ(log_,
+            "basebc"
+            "c"
+            "basebc"
+            "basebcbasebc"
+            "basebcbasebc");
+  ASSERT_EQ(rows().size(), 3u);
+  for (const json& row : rows()) EXPECT_EQ(row["frame_ms"]["n"], 3);
+  EXPECT_EQ(rows()[0]["frame_ms"]["median"], 2);
+  EXPECT_EQ(rows()[1]["frame_ms"]["ci95"], (json{4, 40}));
+  EXPECT_EQ(rows()[2]["frame_ms"]["median"], 80);
+  EXPECT_EQ(rows()[1]["ratio"]["median"], 2);
+  EXPECT_FALSE(fs::exists(kept()));
+}
+
+TEST_F(InterruptedTest, ResumeTakesFramesWithStampsAsTheyWere) {
+  interrupt_after(
+      "basebc"
+      "basebcbasebcbasebc"
+      "basebcbasebc"
+      "basebcbase");
+  run();
+  EXPECT_EQ(log_,
+            "basebc"
+            "basebc"
+            "basebc"
+            "bc");
+  for (const json& row : rows()) {
+    EXPECT_EQ(row["passes"][0]["type"], "compose");
+    EXPECT_EQ(row["passes"][0]["gpu_ms"]["overlapped"]["n"], 1);
+    EXPECT_EQ(row["passes"][0]["gpu_ms"]["isolated"]["median"], 1.5);
+    EXPECT_EQ(row["passes"][0]["cpu_ms"], 0.1);
+  }
+}
+
+// The row that was written is not measured again, and still counts as one of those that took turns.
+TEST_F(InterruptedTest, ResumeBetweenTheRowsOfATurnMeasuresNoFrameAgain) {
+  run();
+  const fs::path results = options_.out / "results.jsonl";
+  std::ifstream stream(results);
+  std::string first;
+  std::getline(stream, first);
+  log_.clear();
+  options_.overwrite = true;
+  interrupt_after(
+      "basebc"
+      "basebcbasebcbasebc"
+      "basebcbasebc"
+      "basebcbasebc");
+  std::ofstream(results) << first << "\n";
+  const BenchResult again = run();
+  EXPECT_EQ(again.resumed, 1u);
+  EXPECT_EQ(again.measured, 2u);
+  EXPECT_EQ(log_,
+            "basebc"
+            "basebc"
+            "basebc");
+  EXPECT_EQ(rows()[2]["frame_ms"]["median"], 8);
+}
+
+TEST_F(InterruptedTest, FramesOfOtherTechniquesAreThrownAway) {
+  interrupt_after(
+      "basebc"
+      "basebc"
+      "baseb");
+  suite_.repeat = 2;
+  run();
+  EXPECT_EQ(rows()[0]["frame_ms"]["median"], 20);
+}
+
+TEST_F(InterruptedTest, ATornLastFrameIsMeasuredAgain) {
+  interrupt_after(
+      "basebc"
+      "basebc"
+      "baseb");
+  fs::resize_file(kept(), fs::file_size(kept()) - 20);
+  run();
+  EXPECT_EQ(log_.substr(0, 9),
+            "basebc"
+            "bc"
+            "b");
+  EXPECT_EQ(rows()[1]["frame_ms"]["median"], 40);
+}
+
+TEST_F(InterruptedTest, AFileThatHoldsNoFramesIsAnError) {
+  interrupt_after(
+      "basebc"
+      "basebc"
+      "baseb");
+  std::ofstream(kept()) << "{\"group\": 3}\n";
+  EXPECT_THROW(run(), Error);
+}
+
+TEST_F(InterruptedTest, SequencesBeginAnew) {
+  suite_.frames = 3;
+  interrupt_after(
+      "basebc"
+      "basebc"
+      "baseb");
+  run();
+  EXPECT_EQ(log_.substr(0, 24),
+            "basebc"
+            "basebc"
+            "basebc"
+            "basebc");
+}
+
 TEST_F(HarnessTest, ResumeMeasuresFailedRowsAgain) {
   broken_scene_ = "one";
   run();
