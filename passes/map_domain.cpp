@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/area_light.h"
+
 namespace gnomon {
 namespace {
 
@@ -16,7 +18,8 @@ constexpr double most_of_map = 0.1;         // share of the map's side that a fi
 constexpr uint32_t least_useful_side = 16;  // texels: below, shadows of the ordinary stability scene are lost
 constexpr double most_rise = 0.1;           // share of the depth range over half a kernel
 constexpr double least_texels = 0.5;        // of the map's side, a pixel of the image's
-constexpr uint64_t most_triangles = 1 << 17;  // looked at, evenly spread over the scene's
+constexpr uint64_t most_looks =
+    1 << 17;  // from a light's points at triangles, evenly spread over the scene's
 
 using Corners = std::array<glm::dvec3, 3>;
 
@@ -28,16 +31,19 @@ Corners corners(const Mesh& mesh, size_t triangle, const glm::dmat4& to) {
   return result;
 }
 
+// What a point of a light shines on.
 struct LitArea {
-  double slope;  // from which a surface counts as grazed
+  glm::dvec3 point;  // in the light's frame
+  double slope;      // from which a surface counts as grazed
   double all = 0, grazed = 0;
+  double share() const { return all > 0 ? grazed / all : 0; }
 };
 
 // `c` in the light's frame. `front`: 1 where its winding shows the front, -1 of a mirrored instance, 0 where
 // both sides count.
 void add(LitArea& area, const Corners& c, bool directional, int front) {
   const glm::dvec3 twice = glm::cross(c[1] - c[0], c[2] - c[0]), middle = (c[0] + c[1] + c[2]) / 3.0;
-  const glm::dvec3 to_light = directional ? glm::dvec3(0, 0, 1) : -middle;
+  const glm::dvec3 to_light = directional ? glm::dvec3(0, 0, 1) : area.point - middle;
   const double size = glm::length(twice), distance = glm::length(to_light);
   if (!(size > 0) || !(distance > 0)) return;
   double cosine = glm::dot(twice, to_light) / (size * distance);
@@ -71,21 +77,27 @@ bool inside(const Mesh& mesh, const glm::dmat4& light_from_object) {
 
 }  // namespace
 
-double grazed_share(const Scene& scene, const Light& light, double slope) {
+double grazed_share(const Scene& scene, const Light& light, double slope,
+                    const std::vector<glm::dvec3>& points) {
   const glm::dmat4 light_from_world = glm::inverse(light.world_from_light);
-  const uint64_t stride = 1 + scene.triangles() / most_triangles;
-  LitArea area{slope};
+  const uint64_t stride = 1 + scene.triangles() * points.size() / most_looks;
+  std::vector<LitArea> areas;
+  for (const glm::dvec3& point : points) areas.push_back({point, slope});
   uint64_t place = 0;  // of the instance's first triangle among all
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     const glm::dmat4 to = light_from_world * instance.world_from_object;
     const int winding = glm::determinant(to) < 0 ? -1 : 1;
     const int front = scene.materials[mesh.material].double_sided ? 0 : winding;
-    for (uint64_t i = (stride - place % stride) % stride; i < mesh.triangles(); i += stride)
-      add(area, corners(mesh, i, to), light.type == LightType::directional, front);
+    for (uint64_t i = (stride - place % stride) % stride; i < mesh.triangles(); i += stride) {
+      const Corners triangle = corners(mesh, i, to);
+      for (LitArea& area : areas) add(area, triangle, light.type == LightType::directional, front);
+    }
     place += mesh.triangles();
   }
-  return area.all > 0 ? area.grazed / area.all : 0;
+  double most = 0;
+  for (const LitArea& area : areas) most = std::max(most, area.share());
+  return most;
 }
 
 const Instance* surrounding_caster(const Scene& scene, const Light& light) {
@@ -100,13 +112,16 @@ const Instance* surrounding_caster(const Scene& scene, const Light& light) {
 
 namespace {
 
-void warn_about_light(Environment& e, const Light& light) {
+void warn_about_light(Environment& e, const Light& light, MapsFrom from) {
   constexpr double degrees = 180 / std::numbers::pi;
-  if (const double share = grazed_share(e.scene(), light, steep_slope); share > most_grazed)
+  const bool area = from == MapsFrom::area && shines_as_area(light);
+  const double share = grazed_share(e.scene(), light, steep_slope,
+                                    area ? border_points(*light.area) : std::vector{glm::dvec3(0.0)});
+  if (share > most_grazed)
     e.warn(fmt::format(
-        "light '{}' meets {:.0f} % of what it shines on at more than {:.0f} degrees from the normal: "
+        "{}light '{}' meets {:.0f} % of what it shines on at more than {:.0f} degrees from the normal: "
         "shadows there are coarser than elsewhere",
-        light.name, 100 * share, std::atan(steep_slope) * degrees));
+        area ? "some part of " : "", light.name, 100 * share, std::atan(steep_slope) * degrees));
   if (const Instance* caster = surrounding_caster(e.scene(), light))
     e.warn(
         fmt::format("light '{}' is inside of '{}', which leaves few texels' depths for the rest of the scene",
@@ -128,13 +143,13 @@ void warn_about_range(Environment& e) {
 
 }  // namespace
 
-void warn_about_maps(Environment& e, uint32_t side) {
+void warn_about_maps(Environment& e, uint32_t side, MapsFrom from) {
   const uint32_t pixels = std::max(e.settings().width, e.settings().height);
   if (side < least_useful_side)
     e.warn(fmt::format("a map of {} texels a side tells little: use at least {}", side, least_useful_side));
   else if (side < least_texels * pixels)
     e.warn(fmt::format("a map of {} texels a side is coarse for an image of {} pixels", side, pixels));
-  for (const Light& light : e.scene().lights) warn_about_light(e, light);
+  for (const Light& light : e.scene().lights) warn_about_light(e, light, from);
   warn_about_range(e);
 }
 

@@ -67,7 +67,7 @@ ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache, doub
 void SampleMaps::prepare(Environment& e, uint32_t capacity, bool split) {
   layers_ = e.shape("maps").layers;
   size_ = e.shape("maps").extent.width;
-  warn_about_maps(e, size_);
+  warn_about_maps(e, size_, MapsFrom::area);
   RasterState state;
   state.vertex = "sample_maps.vert.glsl";
   state.depth = VK_FORMAT_D32_SFLOAT;

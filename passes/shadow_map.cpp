@@ -36,7 +36,7 @@ class ShadowMap : public Pass {
   void prepare(Environment& e) override {
     const bool linear = e.params().choice("encoding") == "linear";
     const std::string& bias = e.params().choice("bias");
-    warn_about_maps(e, e.shape("depth").extent.width);
+    warn_about_maps(e, e.shape("depth").extent.width, MapsFrom::centre);
     midpoint_ = bias == "midpoint";
     cull_ = bias == "back_face" ? Cull::front : Cull::none;
     casters_.prepare(e, "depth");

@@ -34,6 +34,18 @@ TEST(MapDomain, GrazedShareIsThatOfTheAreaBeyondTheSlope) {
   EXPECT_EQ(grazed_share(scene, sun, 40), 0);  // 88.57 degrees
 }
 
+TEST(MapDomain, GrazedShareOfAnAreaIsThatOfItsLowestPoint) {
+  Scene scene;
+  analytic::add(scene, analytic::square(1), {0, 0, 0});
+  const Light light = spot_at(80, 7);  // 1.2 above the floor
+  EXPECT_EQ(grazed_share(scene, light, 20), 0);
+  EXPECT_EQ(grazed_share(scene, light, 20, {{0, 0, 0}, {0.5, 0.5, 0}}), 0);
+  // Its lower side is 88 degrees from the floor's normal.
+  EXPECT_EQ(grazed_share(scene, light, 20, {{1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}}), 1);
+  const std::vector<glm::dvec3> below = {{2, 2, 0}, {-2, -2, 0}, {2, -2, 0}, {-2, 2, 0}};
+  EXPECT_EQ(grazed_share(scene, light, 20, below), 0);  // seen from above or not at all
+}
+
 TEST(MapDomain, GrazedShareWeighsByAreaAndKnowsFrontsFromBacks) {
   Scene scene;
   analytic::add(scene, analytic::square(2), {0, 0, 0});  // area 16, grazed
