@@ -112,16 +112,21 @@ const Instance* surrounding_caster(const Scene& scene, const Light& light) {
 
 namespace {
 
-void warn_about_light(Environment& e, const Light& light, MapsFrom from) {
+// Slope beyond which a map of `side` texels, foreshortened by it, tells as little as one of
+// least_useful_side.
+double most_slope(uint32_t side) { return std::min(steep_slope, double(side) / least_useful_side); }
+
+void warn_about_light(Environment& e, const Light& light, uint32_t side, MapsFrom from) {
   constexpr double degrees = 180 / std::numbers::pi;
+  const double slope = most_slope(std::max(side, least_useful_side));
   const bool area = from == MapsFrom::area && shines_as_area(light);
-  const double share = grazed_share(e.scene(), light, steep_slope,
-                                    area ? border_points(*light.area) : std::vector{glm::dvec3(0.0)});
+  const double share =
+      grazed_share(e.scene(), light, slope, area ? border_points(*light.area) : std::vector{glm::dvec3(0.0)});
   if (share > most_grazed)
     e.warn(fmt::format(
         "{}light '{}' meets {:.0f} % of what it shines on at more than {:.0f} degrees from the normal: "
         "shadows there are coarser than elsewhere",
-        area ? "some part of " : "", light.name, 100 * share, std::atan(steep_slope) * degrees));
+        area ? "some part of " : "", light.name, 100 * share, std::atan(slope) * degrees));
   if (const Instance* caster = surrounding_caster(e.scene(), light))
     e.warn(
         fmt::format("light '{}' is inside of '{}', which leaves few texels' depths for the rest of the scene",
@@ -149,7 +154,7 @@ void warn_about_maps(Environment& e, uint32_t side, MapsFrom from) {
     e.warn(fmt::format("a map of {} texels a side tells little: use at least {}", side, least_useful_side));
   else if (side < least_texels * pixels)
     e.warn(fmt::format("a map of {} texels a side is coarse for an image of {} pixels", side, pixels));
-  for (const Light& light : e.scene().lights) warn_about_light(e, light, from);
+  for (const Light& light : e.scene().lights) warn_about_light(e, light, side, from);
   warn_about_range(e);
 }
 
