@@ -16,9 +16,9 @@ using namespace distance_transform;
 
 namespace {
 
-constexpr uint32_t kBand = 4096;      // columns that an invocation of distance_transform_envelope takes
-constexpr uint32_t kPruneGroup = 32;  // workgroup of distance_transform_prune
-constexpr uint32_t kFoundGroup = 64;  // of distance_transform_resolve
+constexpr uint32_t kBand = 4096;  // columns that an invocation of distance_transform_envelope takes
+constexpr uint32_t kPruneGroup = 32, kPruneSpan = 256;  // invocations and columns of distance_transform_prune
+constexpr uint32_t kFoundGroup = 64;                    // of distance_transform_resolve
 
 // Lengths of jump flooding's steps, in order.
 std::vector<uint32_t> flood_steps(const std::string& variant, Extent size) {
@@ -76,18 +76,23 @@ class DistanceTransform : public Pass {
 
   void record(Context& c) override {
     const ImageShape shape = c.shape("nearest");
+    c.section("sites");
     if (reaching_) c.fill("reached", 0);
     for (uint32_t layer = 0; layer < shape.layers; ++layer) find_sites(c, layer);
     c.own_barrier();
     c.dispatch(carry_, divide_up(shape.extent.width, 32), shape.layers);
+    c.section("tiles");
     if (algorithm_ == "bounded_exact")
       search(c, shape);
     else
       list_all(c, shape);
     if (algorithm_ == "banded_exact") {
       c.own_barrier();
-      c.dispatch(prune_, divide_up(shape.extent.width, kPruneGroup * kChunk),
-                 divide_up(shape.extent.height, kWord), shape.layers);
+      c.section("columns");
+      const uint32_t spans =
+          divide_up(shape.extent.width, kPruneSpan) * divide_up(shape.extent.height, kWord);
+      c.dispatch(prune_, divide_up(spans, kPruneGroup), shape.layers);
+      c.section("rows");
       sweep(c, shape);
     }
     if (algorithm_ == "jump_flooding") flood(c, shape);
@@ -186,6 +191,7 @@ class DistanceTransform : public Pass {
 
   void flood(Context& c, const ImageShape& shape) const {
     c.own_barrier();
+    c.section("flood");
     c.dispatch_over(seed_, shape.extent, shape.layers);
     // The last step writes `nearest`; the seeds are in both.
     size_t left = steps_.size();
@@ -209,6 +215,7 @@ class DistanceTransform : public Pass {
     c.own_barrier();
     c.dispatch(candidate_arguments_, 1);
     c.own_barrier();
+    c.section("search");
     c.dispatch_indirect(search_, "candidate_arguments");
     c.own_barrier();
     c.dispatch(arguments_, 1);

@@ -37,6 +37,7 @@ json describe(const Options& options, const Image& mask, const EdtRun& run, cons
   json row = {{"mask", options.mask.string()},      {"algorithm", settings.algorithm},
               {"size", {mask.width, mask.height}},  {"sites", sites},
               {"device", device_info(device).name}, {"gpu_ms", to_json(summarise(run.gpu_ms))}};
+  for (const auto& [step, ms] : run.step_ms) row["steps"][step]["gpu_ms"] = to_json(summarise(ms));
   if (settings.algorithm == "bounded_exact") row["radius"] = settings.radius;
   if (settings.algorithm == "jump_flooding") row["variant"] = settings.variant;
   return row;
@@ -54,6 +55,8 @@ void print(const json& row) {
   const json& ms = row["gpu_ms"];
   fmt::print("  {:.3f} ms (median of {}, MAD {:.3f})\n", ms["median"].get<double>(), ms["n"].get<int>(),
              ms["mad"].get<double>());
+  for (const auto& [step, times] : row["steps"].items())
+    fmt::print("  {:<8} {:.3f} ms\n", step, times["gpu_ms"]["median"].get<double>());
   if (row.contains("wrong_pixels"))
     fmt::print("  {} wrong pixels, largest error {} pixels\n", row["wrong_pixels"].get<uint64_t>(),
                row["largest_error"].dump());

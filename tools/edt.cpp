@@ -52,6 +52,18 @@ Graph edt_graph(const EdtSettings& settings) {
   return parse_graph(graph.dump(), "edt");
 }
 
+// The pass "transform" and its parts, "transform.STEP".
+void add_times(EdtRun& run, const FrameTiming& timing) {
+  constexpr std::string_view name = "transform", part = "transform.";
+  double all = 0;
+  for (const PassTiming& pass : timing.passes) {
+    const bool step = pass.id.starts_with(part);
+    if (step || pass.id == name) all += pass.gpu_ms;
+    if (step) run.step_ms[pass.id.substr(part.size())].push_back(pass.gpu_ms);
+  }
+  run.gpu_ms.push_back(all);
+}
+
 }  // namespace
 
 EdtRun run_edt(const std::shared_ptr<Device>& device, const std::shared_ptr<const Image>& mask,
@@ -61,11 +73,8 @@ EdtRun run_edt(const std::shared_ptr<Device>& device, const std::shared_ptr<cons
   render.images["mask"] = mask;
   Renderer renderer(device, std::make_shared<const Scene>(least_scene()), edt_graph(settings), render);
   EdtRun run;
-  for (uint32_t i = 0; i < settings.warmup + settings.repeat; ++i) {
-    const FrameTiming timing = renderer.render(TimingMode::isolated);
-    for (const PassTiming& pass : timing.passes)
-      if (i >= settings.warmup && pass.id == "transform") run.gpu_ms.push_back(pass.gpu_ms);
-  }
+  for (uint32_t i = 0; i < settings.warmup; ++i) renderer.render(TimingMode::isolated);
+  for (uint32_t i = 0; i < settings.repeat; ++i) add_times(run, renderer.render(TimingMode::isolated));
   run.nearest = renderer.read_words("nearest");
   return run;
 }

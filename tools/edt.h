@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,7 @@ constexpr uint32_t no_site = 0xFFFFFFFF;  // shaders/glsl/lib/distance_transform
 struct EdtRun {
   std::vector<uint32_t> nearest;  // a pixel: x | y << 16 of its nearest site, or no_site; row 0 at the top
   std::vector<double> gpu_ms;     // of the transform alone, a run
+  std::map<std::string, std::vector<double>> step_ms;  // of its steps, a run
 };
 
 // Non-zero pixels of `mask`'s first channel are sites. Error: settings that the pass refuses, images that the

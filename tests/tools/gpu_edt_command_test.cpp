@@ -55,6 +55,9 @@ TEST_F(EdtCommand, WritesDistancesAndFigures) {
   }
   const nlohmann::json row = read_json("out.json");
   EXPECT_EQ(row["gpu_ms"]["n"], 3);
+  double steps_ms = 0;
+  for (const auto& [step, times] : row["steps"].items()) steps_ms += times["gpu_ms"]["median"].get<double>();
+  EXPECT_GT(steps_ms, 0);
   EXPECT_EQ(row["size"], (nlohmann::json{75, 50}));
   EXPECT_EQ(row["sites"], std::count(mask.data.begin(), mask.data.end(), 1.0f));
 }
