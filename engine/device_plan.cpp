@@ -128,7 +128,7 @@ void DevicePlan::make_nodes() {
 void DevicePlan::make_node(uint32_t index) {
   const PlanNode& node = plan_.nodes[index];
   NodeState& state = nodes_[index];
-  state.preamble = preamble(node.declaration, node.constant_inputs);
+  state.preamble = light_kind_text(scene_.faces()) + preamble(node.declaration, node.constant_inputs);
   const auto shown = shader_ports(node.declaration);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const ShaderPort& s : shown)

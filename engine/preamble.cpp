@@ -103,6 +103,13 @@ std::vector<ShaderPort> shader_ports(const Declaration& declaration) {
   return shown;
 }
 
+std::string light_kind_text(const std::vector<LightFace>& faces) {
+  const auto directional =
+      std::count_if(faces.begin(), faces.end(), [](const LightFace& f) { return f.orthographic; });
+  if (faces.empty() || (directional != 0 && directional != std::ssize(faces))) return {};
+  return directional == 0 ? "#define NO_DIRECTIONAL_LIGHTS 1\n" : "#define ALL_DIRECTIONAL_LIGHTS 1\n";
+}
+
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs) {
   // Constants rather than loads: drivers unroll loops over them and keep loads in those loops uniform.
   std::string text = fmt::format("#define LIGHT_COUNT {}\n#define FACE_COUNT {}\n",

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/pass.h"
+#include "engine/scene.h"
 #include "engine/shader.h"
 
 namespace gnomon {
@@ -21,6 +22,10 @@ std::vector<ShaderPort> shader_ports(const Declaration& declaration);
 // `x_at(ivec2, int layer)`), which read the single texel of an input that was folded to a constant. Integer
 // and number parameters are `params.name`. LIGHT_COUNT and FACE_COUNT are the scene's.
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs);
+
+// NO_DIRECTIONAL_LIGHTS or ALL_DIRECTIONAL_LIGHTS where all lights are of one kind, so that shaders leave out
+// the other; empty otherwise. `faces`: of all lights' maps.
+std::string light_kind_text(const std::vector<LightFace>& faces);
 
 // Flags: NAME 0 or 1. Choices: NAME = index of the chosen, and NAME_CHOICE for each possible one.
 Defines parameter_defines(const Params& params);

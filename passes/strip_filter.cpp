@@ -115,6 +115,7 @@ void StripFilter::record(Context& c) {
     c.push(pipeline, reference_depth_);
     dispatch(pipeline);
   };
+  c.section("lists");
   clear_lists(c);
   if (tiled_) c.fill("cell_states", 0);
   run(classify_, [&](const Pipeline& p) {
@@ -127,7 +128,9 @@ void StripFilter::record(Context& c) {
       [&](const Pipeline& p) { c.dispatch(p, divide_up(strips.along_y, kListGroup), 1, strips.layers); });
   run(list_x_,
       [&](const Pipeline& p) { c.dispatch(p, divide_up(strips.along_x, kListGroup), 1, strips.layers); });
+  c.section("along_x");
   run(along_x_, [&](const Pipeline& p) { c.dispatch_indirect(p, "control", kAlongX * kWord); });
+  c.section("along_y");
   run(along_y_, [&](const Pipeline& p) { c.dispatch_indirect(p, "control", kAlongY * kWord); });
 }
 

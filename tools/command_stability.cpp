@@ -26,7 +26,7 @@ struct Options {
   std::vector<std::string> graphs, axes, skipped;
   std::optional<std::string> test;
   fs::path out, json_file;
-  double timeout = 600;  // seconds a case
+  double timeout = 1800;  // seconds a case: three frames of the longest that a device may take
   bool quick = false, resume = false, overwrite = false;
   DeviceFlags device;
 };

@@ -13,8 +13,8 @@ const float SIGMAS = 2.0;  // of the Gaussian, in half a window
 void load_part(Strip strip) {
   for (int place = part(); place < strip.places; place += PARTS) {
     ivec2 pixel = pixel_of(strip, place);
-    Receiving here = surface_at(pixel, strip.light, is_own(strip, place));
-    values[place * LINES + line()] = source_at(pixel, strip.light);
+    Receiving here = surface_at(strip, place, is_own(strip, place));
+    values[place * LINES + line()] = source_at(pixel, strip.layer);
     positions[place * LINES + line()] = here.position;
     if (here.receives) atomicOr(receives[line() * WORDS + place / BITS], 1u << uint(place % BITS));
   }
@@ -41,9 +41,9 @@ void filter_cell(Strip strip, int cell) {
   int first = strip.reach + 1 + cell * CELL;
   for (int place = first; place < first + (is_needed(strip, cell) ? CELL : 0); ++place) {
     ivec2 pixel = pixel_of(strip, place);
-    Receiving here = surface_at(pixel, strip.light, false);
+    Receiving here = surface_at(strip, place, false);
     float v = here.receives ? bilateral(place, here) : values[place * LINES + line()];
-    store(pixel, strip.light, v);
+    store(pixel, strip.layer, v);
   }
 }
 

@@ -12,7 +12,7 @@ vec3 irradiance(Light light, vec3 p, vec3 n) {
   float distance;
   vec3 l = to_light(light, p, distance);
   float e = max(dot(n, l), 0.0);
-  if (light.position.w != LIGHT_DIRECTIONAL) e *= distance_falloff(distance, light.direction.w);
+  if (!is_directional(light)) e *= distance_falloff(distance, light.direction.w);
   if (light.position.w == LIGHT_SPOT) e *= spot_falloff(dot(-l, light.direction.xyz), light.cone.x, light.cone.y);
   return e * light.intensity.rgb;
 }

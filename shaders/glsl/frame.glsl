@@ -27,6 +27,16 @@ struct Light {
 #define LIGHT_POINT 1.0
 #define LIGHT_DIRECTIONAL 2.0
 
+bool is_directional(Light light) {
+#if defined(NO_DIRECTIONAL_LIGHTS)
+  return false;
+#elif defined(ALL_DIRECTIONAL_LIGHTS)
+  return true;
+#else
+  return light.position.w == LIGHT_DIRECTIONAL;
+#endif
+}
+
 struct Instance {
   mat4 relative_from_object;
   vec4 normal_columns[3];
@@ -78,7 +88,7 @@ vec3 previous_image_place(vec3 p) {
 
 // Unit vector from `p` to the light, and the distance (infinite for directional lights).
 vec3 to_light(Light light, vec3 p, out float distance) {
-  if (light.position.w == LIGHT_DIRECTIONAL) {
+  if (is_directional(light)) {
     distance = 1.0 / 0.0;
     return -light.direction.xyz;
   }
@@ -89,29 +99,36 @@ vec3 to_light(Light light, vec3 p, out float distance) {
 
 // Does a surface with unit geometric normal `n` at `p` face the light? Where not, it is in shadow whatever lies between.
 bool faces_light(Light light, vec3 p, vec3 n) {
-  return dot(n, light.position.w == LIGHT_DIRECTIONAL ? -light.direction.xyz : light.position.xyz - p) > 0.0;
+  return dot(n, is_directional(light) ? -light.direction.xyz : light.position.xyz - p) > 0.0;
 }
 
 // Beyond its range a light shines on nothing.
 bool in_range(Light light, vec3 p) {
   float range = light.direction.w;
   vec3 d = light.position.xyz - p;
-  return range == 0.0 || light.position.w == LIGHT_DIRECTIONAL || dot(d, d) <= range * range;
+  return range == 0.0 || is_directional(light) || dot(d, d) <= range * range;
 }
 
 // The light of a layer of an image. A single one's loads are uniform wherever the layer's number comes from.
 int light_of(int layer) { return LIGHT_COUNT == 1 ? 0 : layer; }
 
-// Does the shadow map of a light, by its index, hold `p`? Beyond it nobody knows of shadows.
-bool in_map(int light, vec3 p) {
+// The only face of a light's shadow map, or the first of a point light's.
+LightFace first_face(int light) {
 #if FACE_COUNT == LIGHT_COUNT  // one each
-  LightFace face = faces[light];
+  return faces[light];
 #else
-  if (lights[light].faces.y != 1) return true;  // a point light's faces see everything
-  LightFace face = faces[lights[light].faces.x];
+  return faces[lights[light].faces.x];
+#endif
+}
+
+// Does the shadow map of a light with that first face hold `p`? Beyond it nobody knows of shadows.
+bool in_map(Light light, LightFace face, vec3 p) {
+#if FACE_COUNT != LIGHT_COUNT
+  if (light.faces.y != 1) return true;  // a point light's faces see everything
 #endif
   return face_sees(face_project(face, face_space(face, vec4(p, 1.0))));
 }
+bool in_map(int light, vec3 p) { return in_map(lights[light], first_face(light), p); }
 
 // The face of the shadow map that sees `p`: of a point light, the one of its major axis (+x -x +y -y +z -z).
 uint face_of(Light light, vec3 p) {

@@ -27,13 +27,12 @@ bool edge_between(Receiving a, Receiving b) {
 void sum_part(Strip strip) {
   int first = part() * PART, end = min(first + PART, strip.places);
   if (!any_needed(strip, first, end)) end = first;
-  Receiving before = surface_at(pixel_of(strip, first - 1), strip.light, false);
+  Receiving before = surface_at(strip, first - 1, false);
   uint sum = 0u, found = 0u;
   for (int place = first; place < end; ++place) {
-    ivec2 pixel = pixel_of(strip, place);
-    Receiving here = surface_at(pixel, strip.light, is_own(strip, place));
+    Receiving here = surface_at(strip, place, is_own(strip, place));
     if (edge_between(before, here)) found |= 1u << place - first;
-    sum += uint(source_at(pixel, strip.light) * UNIT + 0.5);
+    sum += uint(source_at(pixel_of(strip, place), strip.layer) * UNIT + 0.5);
     sums[place * LINES + line()] = sum;
     depths[place * LINES + line()] = here.depth;
     before = here;
@@ -98,10 +97,10 @@ void filter_cell(Strip strip, int cell) {
   bool needed = is_needed(strip, cell), filtered = needed && changes_along(strip, cell);
   load_edges(first);
   for (int place = first; place < first + (filtered ? CELL : 0); ++place)
-    store(pixel_of(strip, place), strip.light, mean(place, first, half_width(depths[place * LINES + line()])));
+    store(pixel_of(strip, place), strip.layer, mean(place, first, half_width(depths[place * LINES + line()])));
   for (int place = first; place < first + (needed && !filtered ? CELL : 0); ++place) {
     ivec2 pixel = pixel_of(strip, place);
-    store(pixel, strip.light, source_at(pixel, strip.light));
+    store(pixel, strip.layer, source_at(pixel, strip.layer));
   }
 }
 

@@ -28,7 +28,7 @@ vec4 bilinear(vec2 position, int layer, int level) {
 float footprint_level(ivec2 pixel, Query query) {
   float device_depth = depth_at(pixel).x;
   vec3 n = octahedral_decode(geometric_at(pixel).xy), p = relative_position(pixel, device_depth);
-  LightFace face = faces[query.face];
+  LightFace face = query.face;
   float size = map_size(), most = 1.0, least_facing = 1e-2 * length(p);
   for (int axis = 0; axis < 2; ++axis) {
     vec3 ray = p + view_depth(device_depth) * (axis == 0 ? frame.ray_dx.xyz : frame.ray_dy.xyz);
@@ -58,7 +58,7 @@ vec4 filtered(Query query, int layer, float level) { return bilinear(query.posit
 // which moments cannot tell from occluders: `bias_kernel` moves the receiver towards the light by that part of what the plane
 // rises over half the kernel.
 float receiver_linear_depth(Query query, float level) {
-  LightFace face = faces[query.face];
+  LightFace face = query.face;
   Receiver plane = query.plane;
   float half_width = 0.5 * (float(params.kernel) * exp2(level) - 1.0);
   float z = receiver_depth(face, plane, plane.texel, true);
@@ -79,7 +79,7 @@ float warped_visibility(vec2 stored, float t, float exponent) {
 }
 
 float reconstruct(Query query, float z, float level) {
-  int layer = query.face * MOMENT_LAYERS;
+  int layer = query.layer * MOMENT_LAYERS;
 #if BASIS == BASIS_FOURIER
   vec2 even = csm_first(z), rotation = csm_rotation(z);
   float sum = 0.0;

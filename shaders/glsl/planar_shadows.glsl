@@ -13,7 +13,7 @@ layout(push_constant) uniform Push {
 
 // The light as a homogeneous point, at infinity for directional lights.
 vec4 light_point(Light light) {
-  return light.position.w == LIGHT_DIRECTIONAL ? vec4(-light.direction.xyz, 0.0) : vec4(light.position.xyz, 1.0);
+  return is_directional(light) ? vec4(-light.direction.xyz, 0.0) : vec4(light.position.xyz, 1.0);
 }
 
 #endif

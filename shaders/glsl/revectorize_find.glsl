@@ -9,9 +9,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 const ivec2 OFFSET[4] = ivec2[4](ivec2(0, 1), ivec2(1, 1), ivec2(1, 0), ivec2(0, 0));  // in the order of textureGather
 
-float tested(ivec2 at, float device_depth, vec3 normal, int width) {
+float tested(ivec2 at, float device_depth, vec3 normal, Light light, LightFace face, int width) {
   Query query;
-  int state = make_query(at, device_depth, normal, query);
+  int state = make_query(at, device_depth, normal, light, face, query);
   ivec2 texel = ivec2(floor(query.position));
   bvec4 neighbours;
   bool lit = is_lit_cross(query, texel, neighbours);
@@ -30,18 +30,20 @@ void main() {
   vec4 depths = textureGather(depth, corner);
   vec4 normals_x = textureGather(geometric, corner, 0), normals_y = textureGather(geometric, corner, 1);
   vec4 v = vec4(1.0);
+  Light light = lights[push.light];
+  LightFace face = faces[push.face];
   uint undecided = 0u;
   for (int i = 0; i < 4; ++i) {
     ivec2 at = first + OFFSET[i];
     vec3 n = octahedral_decode(vec2(normals_x[i], normals_y[i]));
     bool there = !is_background(depths[i]) && all(lessThan(at, size));
-    bool faces = faces_light(lights[push.light], relative_position(at, depths[i]), n);
+    bool faces = faces_light(light, relative_position(at, depths[i]), n);
     if (there && !faces) v[i] = unmapped_visibility(PIXEL_AWAY);
     if (there && faces) undecided |= 1u << i;
   }
   for (; undecided != 0u; undecided &= undecided - 1u) {
     int i = findLSB(undecided);
-    v[i] = tested(first + OFFSET[i], depths[i], octahedral_decode(vec2(normals_x[i], normals_y[i])), size.x);
+    v[i] = tested(first + OFFSET[i], depths[i], octahedral_decode(vec2(normals_x[i], normals_y[i])), light, face, size.x);
   }
   for (int i = 0; i < 4; ++i) {
     ivec2 at = first + OFFSET[i];

@@ -12,7 +12,7 @@ void main() {
 #else
   bool far = (in_reference.x & AT_INFINITY) != 0;
   Light light = lights[push.light];
-  vec3 away = light.position.w == LIGHT_DIRECTIONAL ? light.direction.xyz : relative - light.position.xyz;
+  vec3 away = is_directional(light) ? light.direction.xyz : relative - light.position.xyz;
   gl_Position = frame.clip_from_relative * (far ? vec4(away, 0.0) : vec4(relative, 1.0));
 #endif
 }

@@ -14,7 +14,7 @@ const float ROUNDING = 5e-7;  // relative error of a position: four units in the
 // Which side of the triangle faces the light: 1 the one that is wound counter-clockwise, -1 the other. 0: the light lies in the
 // triangle's plane, as far as positions tell. Such a triangle has no shadow; but its far cap would be any plane through the light.
 int side_to_light(Light light, vec3 a, vec3 b, vec3 c) {
-  bool parallel = light.position.w == LIGHT_DIRECTIONAL;
+  bool parallel = is_directional(light);
   vec3 to_light = parallel ? -light.direction.xyz : light.position.xyz - a;
   vec3 ab = b - a, ac = c - a, n = cross(ab, ac);
   float volume = dot(n, to_light);
@@ -40,7 +40,7 @@ void main() {
     if (!casts) continue;
     if (push.z_fail != 0 || (triangle.w & SEE_THROUGH) != 0) emit(front ? CAPS : TURNED_CAPS, triangle.xyz, instance);
     // The far cap of parallel light is a single point.
-    if (push.z_fail != 0 && light.position.w != LIGHT_DIRECTIONAL)
+    if (push.z_fail != 0 && !is_directional(light))
       emit(SIDES, (front ? triangle.zyx : triangle.xyz) | AT_INFINITY, instance);
   }
 }

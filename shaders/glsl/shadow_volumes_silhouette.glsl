@@ -16,7 +16,7 @@ void emit_side(uint at, uint a, uint b, uint instance, bool parallel) {
 }
 
 void main() {
-  bool parallel = lights[push.light].position.w == LIGHT_DIRECTIONAL;
+  bool parallel = is_directional(lights[push.light]);
   uint size = parallel ? 3u : 6u;
   for (uint i = gl_GlobalInvocationID.x; i < push.count; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
     uvec4 edge = edges[i];

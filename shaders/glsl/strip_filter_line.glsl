@@ -20,7 +20,9 @@ int part() { return int(gl_LocalInvocationID.y); }
 
 struct Strip {
   ivec2 origin;  // first pixel
-  int light;
+  int layer;
+  Light light;     // of the layer
+  LightFace face;  // its only one or first
   uint needed;   // cells whose result is needed, a bit each; none beyond the list's end
   int reach;     // pixels, of the widest filter in the frame
   int places;    // of a line; they run from `reach` + 1 before the strip to as many behind it
@@ -42,7 +44,9 @@ Strip strip_of_workgroup() {
   uint needed = needed_x[(tile.layer * strips.y + at.y) * strips.x + at.x];
 #endif
   strip.origin = at * (ALONG * LENGTH + ALONG.yx * CELL);
-  strip.light = tile.layer;
+  strip.layer = tile.layer;
+  strip.light = lights[light_of(tile.layer)];
+  strip.face = first_face(light_of(tile.layer));
   strip.needed = listed ? needed : 0u;
   strip.reach = int(control[REACH]);
   strip.places = listed ? LENGTH + 2 * strip.reach + 2 : 0;
@@ -66,7 +70,7 @@ bool changes_along(Strip strip, int cell) {
   return true;  // of those that are needed
 #else
   ivec2 sides = ALONG * cells_around();
-  return changes(at - sides, at + sides, strip.light);
+  return changes(at - sides, at + sides, strip.layer);
 #endif
 }
 
@@ -89,18 +93,25 @@ void store(ivec2 pixel, int light, float v) {
 #endif
 }
 
+// In `surfaces` instead of the normal: no pair of signed normalised numbers has these bits.
+const uint RECEIVES_NOT = 0x80008000u;
+
 // What `pixel` shows; beyond the image nothing that receives. Along x, `keep` says that along y it will be asked for again.
-Receiving surface_at(ivec2 pixel, int light, bool keep) {
-  ivec3 at = clamped(pixel, light);
+Receiving surface_at(Strip strip, int place, bool keep) {
+  ivec2 pixel = pixel_of(strip, place);
+  ivec3 at = clamped(pixel, strip.layer);
   bool inside = at.xy == pixel;
 #ifdef ALONG_Y_AXIS
   uvec2 packed = imageLoad(surfaces, at).xy;
-  Receiving r = make_receiving(at.xy, uintBitsToFloat(packed.x), unpackSnorm2x16(packed.y), light);
+  float device_depth = uintBitsToFloat(packed.x);
+  Receiving r = Receiving(relative_position(at.xy, device_depth), octahedral_decode(unpackSnorm2x16(packed.y)),
+                          view_depth(device_depth), packed.y != RECEIVES_NOT);
 #else
   float device_depth = depth_at(at.xy).x;
   vec2 encoded = geometric_at(at.xy).xy;  // of two signed normalised 16-bit numbers: nothing is lost
-  Receiving r = make_receiving(at.xy, device_depth, encoded, light);
-  if (keep && inside) imageStore(surfaces, at, uvec4(floatBitsToUint(device_depth), packSnorm2x16(encoded), 0u, 0u));
+  Receiving r = make_receiving(at.xy, device_depth, encoded, strip.light, strip.face);
+  if (keep && inside)
+    imageStore(surfaces, at, uvec4(floatBitsToUint(device_depth), r.receives ? packSnorm2x16(encoded) : RECEIVES_NOT, 0u, 0u));
 #endif
   r.receives = r.receives && inside;
   return r;

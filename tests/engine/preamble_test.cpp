@@ -115,6 +115,16 @@ TEST(Preamble, flags_and_choices_are_defines) {
   EXPECT_EQ(params.never_read().size(), params.specs().size());
 }
 
+TEST(Preamble, lights_of_one_kind_are_told) {
+  std::vector<LightFace> faces(2);
+  EXPECT_EQ(light_kind_text({}), "");
+  EXPECT_EQ(light_kind_text(faces), "#define NO_DIRECTIONAL_LIGHTS 1\n");
+  faces[1].orthographic = true;
+  EXPECT_EQ(light_kind_text(faces), "");
+  faces[0].orthographic = true;
+  EXPECT_EQ(light_kind_text(faces), "#define ALL_DIRECTIONAL_LIGHTS 1\n");
+}
+
 TEST(Preamble, without_ports_and_parameters_tells_the_setting_alone) {
   const Declaration d({{64, 32}, 2, 7}, {}, {});
   EXPECT_EQ(preamble(d, {}), "#define LIGHT_COUNT 2\n#define FACE_COUNT 7\n");

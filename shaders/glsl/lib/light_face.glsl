@@ -13,7 +13,16 @@ struct LightFace {
   uvec4 info;    // light, 1 when orthographic
 };
 
-bool is_orthographic(LightFace face) { return face.info.y != 0; }
+// Where all lights are of one kind, the engine says so, and the other's arithmetic is left out.
+bool is_orthographic(LightFace face) {
+#if defined(NO_DIRECTIONAL_LIGHTS)
+  return false;
+#elif defined(ALL_DIRECTIONAL_LIGHTS)
+  return true;
+#else
+  return face.info.y != 0;
+#endif
+}
 
 // Point or (w = 0) direction in the face's frame.
 vec3 face_space(LightFace face, vec4 p) { return vec3(dot(face.rows[0], p), dot(face.rows[1], p), dot(face.rows[2], p)); }
