@@ -31,26 +31,33 @@ Corners corners(const Mesh& mesh, size_t triangle, const glm::dmat4& to) {
   return result;
 }
 
-// What a point of a light shines on.
+// What a light shines on.
 struct LitArea {
-  glm::dvec3 point;  // in the light's frame
-  double slope;      // from which a surface counts as grazed
+  std::vector<glm::dvec3> points;  // of the light, in its frame
+  bool directional;
+  double slope;  // from which a surface counts as grazed
   double all = 0, grazed = 0;
-  double share() const { return all > 0 ? grazed / all : 0; }
 };
 
 // `c` in the light's frame. `front`: 1 where its winding shows the front, -1 of a mirrored instance, 0 where
 // both sides count.
-void add(LitArea& area, const Corners& c, bool directional, int front) {
+void add(LitArea& area, const Corners& c, int front) {
   const glm::dvec3 twice = glm::cross(c[1] - c[0], c[2] - c[0]), middle = (c[0] + c[1] + c[2]) / 3.0;
-  const glm::dvec3 to_light = directional ? glm::dvec3(0, 0, 1) : area.point - middle;
-  const double size = glm::length(twice), distance = glm::length(to_light);
-  if (!(size > 0) || !(distance > 0)) return;
-  double cosine = glm::dot(twice, to_light) / (size * distance);
-  cosine = front == 0 ? std::abs(cosine) : front * cosine;
-  if (cosine <= 0) return;
+  const double size = glm::length(twice);
+  bool faces = false, grazes = false, above = false, below = false;
+  for (const glm::dvec3& point : area.points) {
+    const glm::dvec3 to_light = area.directional ? glm::dvec3(0, 0, 1) : point - middle;
+    const double cosine = glm::dot(twice, to_light) / (size * glm::length(to_light));  // may be no number
+    const bool lit = (front == 0 ? std::abs(cosine) : front * cosine) > 0;
+    faces = faces || lit;
+    grazes = grazes || (lit && cosine * cosine * (1 + area.slope * area.slope) < 1);
+    above = above || cosine > 0;
+    below = below || cosine < 0;
+  }
+  if (!faces) return;
   area.all += size;
-  if (cosine * cosine * (1 + area.slope * area.slope) < 1) area.grazed += size;
+  // A light on both sides of a surface's plane grazes it from where it crosses that.
+  if (grazes || (above && below)) area.grazed += size;
 }
 
 bool crosses(const Corners& c,
@@ -81,23 +88,18 @@ double grazed_share(const Scene& scene, const Light& light, double slope,
                     const std::vector<glm::dvec3>& points) {
   const glm::dmat4 light_from_world = glm::inverse(light.world_from_light);
   const uint64_t stride = 1 + scene.triangles() * points.size() / most_looks;
-  std::vector<LitArea> areas;
-  for (const glm::dvec3& point : points) areas.push_back({point, slope});
+  LitArea area{points, light.type == LightType::directional, slope};
   uint64_t place = 0;  // of the instance's first triangle among all
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     const glm::dmat4 to = light_from_world * instance.world_from_object;
     const int winding = glm::determinant(to) < 0 ? -1 : 1;
     const int front = scene.materials[mesh.material].double_sided ? 0 : winding;
-    for (uint64_t i = (stride - place % stride) % stride; i < mesh.triangles(); i += stride) {
-      const Corners triangle = corners(mesh, i, to);
-      for (LitArea& area : areas) add(area, triangle, light.type == LightType::directional, front);
-    }
+    for (uint64_t i = (stride - place % stride) % stride; i < mesh.triangles(); i += stride)
+      add(area, corners(mesh, i, to), front);
     place += mesh.triangles();
   }
-  double most = 0;
-  for (const LitArea& area : areas) most = std::max(most, area.share());
-  return most;
+  return area.all > 0 ? area.grazed / area.all : 0;
 }
 
 const Instance* surrounding_caster(const Scene& scene, const Light& light) {

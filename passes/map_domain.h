@@ -9,9 +9,9 @@
 
 namespace gnomon {
 
-// Share of the surface that faces the light (0 to 1, by area), casters and receivers alike, that is steeper
-// than `slope`: the tangent of the light's angle to its normal. Seen from that one of `points`, in the
-// light's frame, from which it is largest. 0 when nothing faces any of them.
+// Share of the surface that faces the light (0 to 1, by area), casters and receivers alike, that some of the
+// light's `points`, in its own frame, meet at a steeper angle than `slope`: its tangent to the normal. 0 when
+// nothing faces any of them.
 double grazed_share(const Scene& scene, const Light& light, double slope,
                     const std::vector<glm::dvec3>& points = {glm::dvec3(0.0)});
 

@@ -42,8 +42,9 @@ TEST(MapDomain, GrazedShareOfAnAreaIsThatOfItsLowestPoint) {
   EXPECT_EQ(grazed_share(scene, light, 20, {{0, 0, 0}, {0.5, 0.5, 0}}), 0);
   // Its lower side is 88 degrees from the floor's normal.
   EXPECT_EQ(grazed_share(scene, light, 20, {{1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}}), 1);
-  const std::vector<glm::dvec3> below = {{2, 2, 0}, {-2, -2, 0}, {2, -2, 0}, {-2, 2, 0}};
-  EXPECT_EQ(grazed_share(scene, light, 20, below), 0);  // seen from above or not at all
+  // Farther down, a part between the two sides does; and nothing that is all below the floor.
+  EXPECT_EQ(grazed_share(scene, light, 20, {{2, 2, 0}, {-2, -2, 0}, {2, -2, 0}, {-2, 2, 0}}), 1);
+  EXPECT_EQ(grazed_share(scene, light, 20, {{-2, 2, 0}, {-2, -2, 0}}), 0);
 }
 
 TEST(MapDomain, GrazedShareWeighsByAreaAndKnowsFrontsFromBacks) {
