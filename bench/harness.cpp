@@ -209,7 +209,9 @@ class SuiteRun {
       group.insert(suite_.configs[config].baseline == config ? group.begin() : group.end(), config);
     }
     std::vector<Chunk> chunks;
-    const size_t step = std::max<size_t>(1, options_.max_alive - 1);
+    // A sequence that is interrupted begins anew: one technique at a time, so that no more than its row is
+    // lost.
+    const size_t step = suite_.frames > 0 ? 1 : std::max<size_t>(1, options_.max_alive - 1);
     for (const auto& [baseline, configs] : groups)
       for (size_t first = 0; first < configs.size(); first += step) {
         const size_t last = std::min(configs.size(), first + step);

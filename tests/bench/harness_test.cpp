@@ -251,7 +251,7 @@ TEST_F(HarnessTest, RatioIsTheMedianOverPairs) {
   EXPECT_EQ(row["ratio"]["baseline"], "base");
 }
 
-TEST_F(HarnessTest, SequencesShowTheirFramesInTurn) {
+TEST_F(HarnessTest, SequencesAreMeasuredInTurnWithTheBaselineAlone) {
   add("other", 0);
   ms_ = {{"base", {1}}, {"other", {2}}};
   suite_.scenes.resize(1);
@@ -259,9 +259,16 @@ TEST_F(HarnessTest, SequencesShowTheirFramesInTurn) {
   EXPECT_EQ(frames_, "");
   const std::string key = rows()[0]["key"];
   suite_.frames = 2;
+  suite_.instrumented = 0;
   options_.overwrite = true;
+  log_.clear();
   run();
-  EXPECT_EQ(frames_, "base0 other0 base1 other1 ");
+  EXPECT_EQ(frames_, "base0 base1 other0 other1 ");
+  EXPECT_EQ(log_,
+            "base"
+            "basebase"
+            "baseother"
+            "baseotherbaseother");  // a frame to warm up first
   EXPECT_EQ(rows()[0]["frame_ms"]["n"], 2);
   EXPECT_NE(rows()[0]["key"], key);
 }
@@ -470,18 +477,24 @@ TEST_F(InterruptedTest, AFileThatHoldsNoFramesIsAnError) {
   EXPECT_THROW(run(), Error);
 }
 
-TEST_F(InterruptedTest, SequencesBeginAnew) {
+TEST_F(InterruptedTest, ASequenceBeginsAnewAndLosesItsOwnRowAlone) {
   suite_.frames = 3;
+  // The baseline by itself, then b: a frame each to warm up, and two of the three that count.
   interrupt_after(
-      "basebc"
-      "basebc"
-      "baseb");
+      "base"
+      "basebasebase"
+      "basebase"
+      "basebase"
+      "baseb"
+      "basebbaseb");
+  EXPECT_EQ(rows().size(), 1u);
   run();
-  EXPECT_EQ(log_.substr(0, 24),
-            "basebc"
-            "basebc"
-            "basebc"
-            "basebc");
+  EXPECT_EQ(log_.substr(0, 20),
+            "baseb"
+            "basebbasebbaseb");
+  EXPECT_EQ(rows().size(), 3u);
+  EXPECT_EQ(rows()[0]["frame_ms"]["median"], 2);
+  EXPECT_EQ(rows()[1]["frame_ms"]["median"], 40);
 }
 
 TEST_F(HarnessTest, ResumeMeasuresFailedRowsAgain) {
