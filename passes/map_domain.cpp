@@ -116,11 +116,11 @@ namespace {
 
 // Slope beyond which a map of `side` texels, foreshortened by it, tells as little as one of
 // least_useful_side.
-double most_slope(uint32_t side) { return std::min(steep_slope, double(side) / least_useful_side); }
+double most_slope(uint32_t side) { return std::clamp(double(side) / least_useful_side, 1.0, steep_slope); }
 
 void warn_about_light(Environment& e, const Light& light, uint32_t side, MapsFrom from) {
   constexpr double degrees = 180 / std::numbers::pi;
-  const double slope = most_slope(std::max(side, least_useful_side));
+  const double slope = most_slope(side);
   const bool area = from == MapsFrom::area && shines_as_area(light);
   const double share =
       grazed_share(e.scene(), light, slope, area ? border_points(*light.area) : std::vector{glm::dvec3(0.0)});

@@ -27,15 +27,7 @@ struct Light {
 #define LIGHT_POINT 1.0
 #define LIGHT_DIRECTIONAL 2.0
 
-bool is_directional(Light light) {
-#if defined(NO_DIRECTIONAL_LIGHTS)
-  return false;
-#elif defined(ALL_DIRECTIONAL_LIGHTS)
-  return true;
-#else
-  return light.position.w == LIGHT_DIRECTIONAL;
-#endif
-}
+bool is_directional(Light light) { return told_directional(light.position.w == LIGHT_DIRECTIONAL); }
 
 struct Instance {
   mat4 relative_from_object;

@@ -19,13 +19,13 @@ int line() { return int(gl_LocalInvocationID.x); }
 int part() { return int(gl_LocalInvocationID.y); }
 
 struct Strip {
-  ivec2 origin;  // first pixel
+  ivec2 origin;    // first pixel
   int layer;
   Light light;     // of the layer
   LightFace face;  // its only one or first
-  uint needed;   // cells whose result is needed, a bit each; none beyond the list's end
-  int reach;     // pixels, of the widest filter in the frame
-  int places;    // of a line; they run from `reach` + 1 before the strip to as many behind it
+  uint needed;     // cells whose result is needed, a bit each; none beyond the list's end
+  int reach;       // pixels, of the widest filter in the frame
+  int places;      // of a line; they run from `reach` + 1 before the strip to as many behind it
 };
 
 Strip strip_of_workgroup() {
@@ -74,22 +74,22 @@ bool changes_along(Strip strip, int cell) {
 #endif
 }
 
-ivec3 clamped(ivec2 pixel, int light) { return ivec3(clamp(pixel, ivec2(0), image_size() - 1), light); }
+ivec3 clamped(ivec2 pixel, int layer) { return ivec3(clamp(pixel, ivec2(0), image_size() - 1), layer); }
 
-float source_at(ivec2 pixel, int light) {
+float source_at(ivec2 pixel, int layer) {
 #ifdef ALONG_Y_AXIS
-  return imageLoad(rows, clamped(pixel, light)).x;
+  return imageLoad(rows, clamped(pixel, layer)).x;
 #else
-  return imageLoad(visibility, clamped(pixel, light)).x;
+  return imageLoad(visibility, clamped(pixel, layer)).x;
 #endif
 }
 
-void store(ivec2 pixel, int light, float v) {
+void store(ivec2 pixel, int layer, float v) {
   if (any(greaterThanEqual(pixel, image_size()))) return;
 #ifdef ALONG_Y_AXIS
-  imageStore(visibility, ivec3(pixel, light), vec4(v));
+  imageStore(visibility, ivec3(pixel, layer), vec4(v));
 #else
-  imageStore(rows, ivec3(pixel, light), vec4(v));
+  imageStore(rows, ivec3(pixel, layer), vec4(v));
 #endif
 }
 

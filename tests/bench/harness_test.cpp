@@ -352,7 +352,7 @@ TEST_F(HarnessTest, ResumeAfterATornLineMeasuresOnlyWhatIsMissing) {
 }
 
 // Base, b and c take turns: a frame each to warm up, three rounds, a frame each to settle the stamps and one
-// of each mode. Interrupted after the second round's second frame, so that five frames are there already.
+// of each mode.
 class InterruptedTest : public HarnessTest {
  protected:
   void SetUp() override {
@@ -372,8 +372,7 @@ class InterruptedTest : public HarnessTest {
     options_.resume = true;
     ms_ = {{"base", {20}}, {"b", {40}}, {"c", {80}}};
   }
-  const fs::path& kept() { return kept_ = options_.out / "interrupted.jsonl"; }
-  fs::path kept_;
+  fs::path kept() const { return options_.out / "interrupted.jsonl"; }
 };
 
 TEST_F(InterruptedTest, ResumeGoesOnInTheMiddleOfARound) {

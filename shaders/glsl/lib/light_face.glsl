@@ -13,16 +13,18 @@ struct LightFace {
   uvec4 info;    // light, 1 when orthographic
 };
 
-// Where all lights are of one kind, the engine says so, and the other's arithmetic is left out.
-bool is_orthographic(LightFace face) {
+// Is a light directional that says `so` of itself? Where all are of one kind the engine says it, and the other kind's arithmetic
+// is left out.
+bool told_directional(bool so) {
 #if defined(NO_DIRECTIONAL_LIGHTS)
   return false;
 #elif defined(ALL_DIRECTIONAL_LIGHTS)
   return true;
 #else
-  return face.info.y != 0;
+  return so;
 #endif
 }
+bool is_orthographic(LightFace face) { return told_directional(face.info.y != 0); }
 
 // Point or (w = 0) direction in the face's frame.
 vec3 face_space(LightFace face, vec4 p) { return vec3(dot(face.rows[0], p), dot(face.rows[1], p), dot(face.rows[2], p)); }
