@@ -178,6 +178,22 @@ void Device::choose_physical(const std::string& name_part) {
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 }
 
+void Device::check_features() {
+  VkPhysicalDeviceVulkan12Features have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceFeatures2 asked{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &have, {}};
+  vkGetPhysicalDeviceFeatures2(physical_, &asked);
+  if (!have.shaderOutputLayer)
+    fail(fmt::format("'{}' cannot choose a layer in the vertex shader", info_.name), {}, {},
+         "Gnomon needs the Vulkan 1.2 feature shaderOutputLayer");
+  VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups, {}};
+  vkGetPhysicalDeviceProperties2(physical_, &properties);
+  if (!(subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT))
+    fail(fmt::format("'{}' cannot shuffle values of a subgroup", info_.name), {}, {},
+         "Gnomon needs VK_SUBGROUP_FEATURE_SHUFFLE_BIT");
+  subgroup_size_ = subgroups.subgroupSize;
+}
+
 void Device::make_device() {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
@@ -192,17 +208,12 @@ void Device::make_device() {
   queue.queueFamilyIndex = queue_family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  VkPhysicalDeviceVulkan12Features have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceFeatures2 asked{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &have, {}};
-  vkGetPhysicalDeviceFeatures2(physical_, &asked);
-  if (!have.shaderOutputLayer)
-    fail(fmt::format("'{}' cannot choose a layer in the vertex shader", info_.name), {}, {},
-         "Gnomon needs the Vulkan 1.2 feature shaderOutputLayer");
+  check_features();
 
   VkPhysicalDeviceVulkan12Features f12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
   f12.shaderOutputLayer = VK_TRUE;
   VkPhysicalDeviceVulkan13Features f13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, &f12};
-  f13.synchronization2 = f13.dynamicRendering = f13.maintenance4 = VK_TRUE;
+  f13.synchronization2 = f13.dynamicRendering = f13.maintenance4 = f13.subgroupSizeControl = VK_TRUE;
   VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &f13, {}};
   features.features.geometryShader = VK_TRUE;  // gl_PrimitiveID in fragment shaders
   features.features.depthClamp = VK_TRUE;

@@ -28,6 +28,7 @@ class Device {
   VkQueue queue() const { return queue_; }
   uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+  uint32_t subgroup_size() const { return subgroup_size_; }  // invocations
   const DeviceInfo& info() const { return info_; }
   double timestamp_period_ns() const { return properties_.limits.timestampPeriod; }
 
@@ -49,6 +50,7 @@ class Device {
   void make_instance(bool validation);
   void choose_physical(const std::string& name_part);
   void make_device();
+  void check_features();
   void destroy();
 
   VkInstance instance_ = VK_NULL_HANDLE;
@@ -58,7 +60,7 @@ class Device {
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
-  uint32_t queue_family_ = 0;
+  uint32_t queue_family_ = 0, subgroup_size_ = 0;
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   DeviceInfo info_;

@@ -1,5 +1,6 @@
 #include "engine/pipeline.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "engine/gpu_scene.h"
@@ -93,6 +94,10 @@ VkPipelineDepthStencilStateCreateInfo depth_stencil_state(const RasterState& sta
   return s;
 }
 
+bool knows_subgroup_size(const Defines& defines) {
+  return std::any_of(defines.begin(), defines.end(), [](const auto& d) { return d.first == kSubgroupSize; });
+}
+
 }  // namespace
 
 Pipeline make_compute_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
@@ -101,6 +106,10 @@ Pipeline make_compute_pipeline(const std::shared_ptr<Device>& device, VkPipeline
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT);
   info.layout = layout;
+  VkPipelineShaderStageRequiredSubgroupSizeCreateInfo subgroup{
+      VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO};
+  subgroup.requiredSubgroupSize = device->subgroup_size();
+  if (knows_subgroup_size(source.defines)) info.stage.pNext = &subgroup;
   VkPipeline handle = VK_NULL_HANDLE;
   check(vkCreateComputePipelines(device->handle(), cache, 1, &info, nullptr, &handle),
         "vkCreateComputePipelines");

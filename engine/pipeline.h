@@ -49,6 +49,10 @@ struct Pipeline {
   VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
 };
 
+// A shader that is given this define knows how many invocations a subgroup has, which is then required of the
+// device.
+constexpr const char* kSubgroupSize = "SUBGROUP_SIZE";
+
 Pipeline make_compute_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
                                const ShaderSource& source, VkPipelineCache cache);
 Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,

@@ -19,6 +19,7 @@ namespace {
 constexpr uint32_t kBand = 4096;  // columns that an invocation of distance_transform_envelope takes
 constexpr uint32_t kPruneGroup = 32, kPruneSpan = 256;  // invocations and columns of distance_transform_prune
 constexpr uint32_t kFoundGroup = 64;                    // of distance_transform_resolve
+constexpr uint64_t kFarArguments = 16;  // bytes: place of the second of two lists' arguments
 
 // Lengths of jump flooding's steps, in order.
 std::vector<uint32_t> flood_steps(const std::string& variant, Extent size) {
@@ -45,6 +46,7 @@ class DistanceTransform : public Pass {
     const Defines mode_defines = modes();
     const auto compute = [&](const char* name, Defines more = {}) {
       more.insert(more.end(), mode_defines.begin(), mode_defines.end());
+      more.emplace_back(kSubgroupSize, std::to_string(e.device().subgroup_size()));
       return e.compute(fmt::format("distance_transform_{}.glsl", name), std::move(more));
     };
     pack_ = compute("pack");
@@ -70,8 +72,8 @@ class DistanceTransform : public Pass {
     }
     tile_columns_ = compute("tile_columns");
     tile_rows_ = compute("tile_rows");
-    candidate_arguments_ = compute("arguments", list("candidate_arguments", 1));
-    search_ = compute("search");
+    candidate_arguments_ = compute("candidate_arguments");
+    for (const bool far : {false, true}) search_[far] = compute("search", {{"FAR_SITES", far ? "1" : "0"}});
   }
 
   void record(Context& c) override {
@@ -216,7 +218,8 @@ class DistanceTransform : public Pass {
     c.dispatch(candidate_arguments_, 1);
     c.own_barrier();
     c.section("search");
-    c.dispatch_indirect(search_, "candidate_arguments");
+    c.dispatch_indirect(search_[0], "candidate_arguments");
+    c.dispatch_indirect(search_[1], "candidate_arguments", kFarArguments);
     c.own_barrier();
     c.dispatch(arguments_, 1);
   }
@@ -234,7 +237,8 @@ class DistanceTransform : public Pass {
   Pipeline prune_;
   Pipeline envelope_[3];  // whole rows, sweep of a band, colouring of a band
   Pipeline seed_, flood_[2];
-  Pipeline tile_columns_, tile_rows_, candidate_arguments_, search_;
+  Pipeline tile_columns_, tile_rows_, candidate_arguments_;
+  Pipeline search_[2];  // for small radii, for large ones
 };
 
 GNOMON_PASS("distance_transform", DistanceTransform);

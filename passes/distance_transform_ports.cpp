@@ -15,11 +15,11 @@ constexpr uint64_t kStripeBytes = 1 << 26;  // of banded_exact's rows: half of w
 bool bounded(const std::string& algorithm) { return algorithm == "bounded_exact"; }
 
 // Of the words of a column, which may be grouped by `columns`.
-ImageShape words_of(const ImageShape& source, VkFormat format, uint32_t columns = 1) {
+ImageShape words_of(const ImageShape& source, uint32_t columns = 1) {
   return {{divide_up(source.extent.width, columns), divide_up(source.extent.height, kWord)},
           source.layers,
           1,
-          format};
+          VK_FORMAT_R32_UINT};
 }
 
 void declare_images(Declaration& d, const ImageShape& source, const std::string& algorithm) {
@@ -31,12 +31,12 @@ void declare_images(Declaration& d, const ImageShape& source, const std::string&
   d.output("nearest", access, true, nearest,
            "x | y << 16 of the nearest site, pixels; 0xFFFFFFFF where there is none");
   if (flooding) d.transient("other", kBoth, true, nearest, "sites known after every second step");
-  d.transient("words", kBoth, true, words_of(source, VK_FORMAT_R32G32_UINT),
-              "sites of 32 rows of a column as bits, and the nearest ones above and below");
+  d.transient("words", kBoth, true, words_of(source), "sites of 32 rows of a column as bits");
+  d.transient("carries", kBoth, true, words_of(source), "the nearest sites above and below such a word");
 }
 
 void declare_envelope(Declaration& d, const ImageShape& source) {
-  d.transient("kept", kBoth, true, words_of(source, VK_FORMAT_R32_UINT, kChunk),
+  d.transient("kept", kBoth, true, words_of(source, kChunk),
               "columns that hold nearest sites of a word's rows, as bits");
   const uint64_t rows = uint64_t(stripe_words(source.extent)) * kWord;
   d.transient_buffer("rows", kBoth | Access::transfer_read, {rows * source.extent.width, 4, "uint"},
@@ -56,14 +56,14 @@ void declare_lists(Declaration& d, const ImageShape& source, const std::string& 
   if (!bounded(algorithm)) return;
   d.transient_buffer("tile_gaps", kBoth, {tiles, 4, "int"}, "rows between a tile and its column's sites");
   d.transient_buffer("candidates", kBoth, {tiles, 4, "uint"}, "tiles that may have a site within the radius");
-  d.transient_buffer("candidate_arguments", kArguments, {4, 4, "uint"}, "of their dispatch");
+  d.transient_buffer("candidate_arguments", kArguments, {8, 4, "uint"},
+                     "of their dispatch for small radii, then of that for large ones");
 }
 
 void declare_listed(Declaration& d, const ImageShape& source) {
   const uint64_t pixels = uint64_t(source.extent.width) * source.extent.height;
   d.transient_buffer("found", kBoth, {pixels, 4, "uint"}, "a layer's pixels that the depth decides about");
   d.transient_buffer("found_arguments", kArguments, {4, 4, "uint"}, "of their dispatch");
-  d.transient("tested", kBoth, true, words_of(source, VK_FORMAT_R32_UINT), "sites after the test, as bits");
 }
 
 }  // namespace

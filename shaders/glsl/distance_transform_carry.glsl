@@ -10,20 +10,15 @@ void main() {
   if (x >= size.x) return;
   int above = NONE_ABOVE;
   for (int w = 0; w < size.y; ++w) {
-#if LISTED
-    uint bits = imageLoad(tested, ivec3(x, w, layer)).x;
-#else
-    uint bits = imageLoad(words, ivec3(x, w, layer)).x;
-#endif
-    imageStore(words, ivec3(x, w, layer), uvec4(bits, pack_carry(above, NONE_BELOW), 0u, 0u));
-    int last = findMSB(bits);
+    imageStore(carries, ivec3(x, w, layer), uvec4(pack_carry(above, NONE_BELOW)));
+    int last = findMSB(imageLoad(words, ivec3(x, w, layer)).x);
     if (last >= 0) above = w * WORD + last;
   }
   int below = NONE_BELOW;
   for (int w = size.y - 1; w >= 0; --w) {
-    uvec2 word = imageLoad(words, ivec3(x, w, layer)).xy;
-    imageStore(words, ivec3(x, w, layer), uvec4(word.x, pack_carry(carry_above(word.y), below), 0u, 0u));
-    int first = findLSB(word.x);
+    above = carry_above(imageLoad(carries, ivec3(x, w, layer)).x);
+    imageStore(carries, ivec3(x, w, layer), uvec4(pack_carry(above, below)));
+    int first = findLSB(imageLoad(words, ivec3(x, w, layer)).x);
     if (first >= 0) below = w * WORD + first;
   }
 }

@@ -2,14 +2,14 @@
 // the columns that distance_transform_prune kept, in which phase 1 found the nearest: a lower envelope of parabolas, kept as a
 // stack of those sites that are nearest somewhere on the row. The stack is in memory where the result of the same row will be,
 // which is filled from its end and so never overtakes what is still needed. An invocation has a row, because neighbouring rows
-// share the words of bits.
+// share the words of bits; rows below the image are swept like others, and not copied.
 //
 // A row is swept in bands of columns, one dispatch each, and coloured in bands from its end: software devices stop loops after some
 // 65000 turns of an invocation. Only the number of entries goes from one band to the next; the rest follows from the stack.
-#extension GL_KHR_shader_subgroup_vote : require
-#include "lib/distance_transform.glsl"
+#include "distance_transform_column.glsl"
 
 layout(local_size_x = 32) in;  // rows of a word
+#include "lib/subgroup.glsl"
 
 #define BAND_WHOLE 0  // the only one: sweep and colour at once
 #define BAND_SWEEP 1
@@ -54,13 +54,15 @@ void push(Entry e, int start) {
   ++count;
 }
 
-void pop() {
-  --count;
-  top = second;
-  top_start = 0;
-  if (count >= 2) {
-    second = make_entry(site_at(count - 2));
-    top_start = start_of(second, top);
+// Where `pops`. What it loads is loaded on all rows: software devices are quicker so than by asking each whether it must.
+void pop(bool pops) {
+  Entry third = make_entry(site_at(max(count - 3, 0)));
+  int start = start_of(third, second);
+  if (pops) {
+    --count;
+    top = second;
+    top_start = count >= 2 ? start : 0;
+    second = third;
   }
 }
 
@@ -78,50 +80,38 @@ void resume(int entries) {
 }
 
 void find_proximate(int word, int layer) {
-  for (int chunk = stripe.begin; chunk < stripe.end; chunk += CHUNK) {
-    uint columns = imageLoad(kept, ivec3(chunk / CHUNK, word, layer)).x;
-    while (columns != 0u) {
-      Entry e;
-      int start;
-      bool pops, pops_anywhere;
-      do {
-        int x = chunk + findLSB(columns);
-        columns &= columns - 1u;
-        int row = nearest_in_column(imageLoad(words, ivec3(x, word, layer)).xy, word * WORD, y);
-        e = make_entry(ivec2(x, row));
+  for (int chunk = stripe.begin; chunk < stripe.end; chunk += CHUNK)
+    for (uint columns = imageLoad(kept, ivec3(chunk / CHUNK, word, layer)).x; columns != 0u; columns &= columns - 1u) {
+      int x = chunk + findLSB(columns), row = nearest_in_column(load_column(x, word, layer), word * WORD, y);
+      bool is_site = is_row(row);
+      Entry e = make_entry(ivec2(x, row));
+      int start = count > 0 ? start_of(top, e) : 0;
+      while (is_site && count > 0 && start <= top_start) {
+        pop(true);
         start = count > 0 ? start_of(top, e) : 0;
-        bool is_site = is_row(row);
-        pops = is_site && count > 0 && start <= top_start;
-        if (is_site && !pops && start < row_length) push(e, start);
-        pops_anywhere = subgroupAny(pops);
-      } while (!pops_anywhere && columns != 0u);
-      bool popped = pops;
-      while (pops) {
-        pop();
-        start = count > 0 ? start_of(top, e) : 0;
-        pops = count > 0 && start <= top_start;
       }
-      if (popped && start < row_length) push(e, start);
+      if (is_site && start < row_length) push(e, start);
     }
+}
+
+// In runs of pixels on which no row's top changes.
+void colour() {
+  for (int x = stripe.end - 1; x >= stripe.begin;) {
+    int last_start = max_of_subgroup(count > 1 ? top_start : -1);
+    for (; x >= max(last_start, stripe.begin); --x) rows[row_begin + x] = top.site;
+    pop(count > 1 && top_start > x);
   }
 }
 
-void colour() {
-  for (int x = stripe.end - 1; x >= stripe.begin;) {
-    bool ends;
-    do {
-      rows[row_begin + x] = top.site;
-      ends = x == top_start && count > 1;
-      --x;
-    } while (!subgroupAny(ends) && x >= stripe.begin);
-    if (ends) pop();
-  }
+// Dealt out, because neighbouring words cost alike, and software devices give each processor a contiguous share of the workgroups.
+int word_of_workgroup() {
+  int group = int(gl_WorkGroupID.x), even = (int(gl_NumWorkGroups.x) + 1) / 2;
+  return stripe.first_word + (group < even ? 2 * group : 2 * (group - even) + 1);
 }
 
 void main() {
-  int word = stripe.first_word + int(gl_WorkGroupID.x);
+  int word = word_of_workgroup();
   y = word * WORD + int(gl_LocalInvocationID.x);
-  if (y >= stripe.size.y) return;
   row_length = stripe.size.x;
   row_begin = (y - stripe.first_word * WORD) * stripe.size.x;
 #if BAND == BAND_WHOLE

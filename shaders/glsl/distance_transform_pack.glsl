@@ -94,9 +94,9 @@ void main() {
     if (at.x + i >= size.x) break;
 #if LISTED
     list(bits[i], at + ivec2(i, 0));
-    imageStore(tested, ivec3(at.x + i, word, layer), uvec4(0u));
+    imageStore(words, ivec3(at.x + i, word, layer), uvec4(0u));
 #else
-    imageStore(words, ivec3(at.x + i, word, layer), uvec4(bits[i], 0u, 0u, 0u));
+    imageStore(words, ivec3(at.x + i, word, layer), uvec4(bits[i]));
 #endif
   }
 }

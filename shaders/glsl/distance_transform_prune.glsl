@@ -6,7 +6,7 @@
 // site that is hidden on the word's first row and on its last is hidden on all rows between. Of a column's sites only three can be
 // nearest: one in the word, for which the column is kept, or the nearest one above or below it. Those above and those below make
 // a hull each; columns with sites in the word lend one of these. A vertex that is more than three words of columns behind stays.
-#include "lib/distance_transform.glsl"
+#include "distance_transform_column.glsl"
 
 layout(local_size_x = 32) in;
 
@@ -23,11 +23,11 @@ int word, layer;
 int begin;   // first column of the span, in the image
 int window;  // first column of the window, in the span; negative at first
 
-uvec2 word_at(int column) { return imageLoad(words, ivec3(begin + column, word, layer)).xy; }
+Column column_at(int column) { return load_column(begin + column, word, layer); }
 
-ivec2 site_of(int column, uvec2 sites, bool above) {
-  int inside = word * WORD + (above ? findLSB(sites.x) : findMSB(sites.x));
-  int row = sites.x != 0u ? inside : above ? carry_above(sites.y) : carry_below(sites.y);
+ivec2 site_of(int column, Column sites, bool above) {
+  int inside = word * WORD + (above ? findLSB(sites.bits) : findMSB(sites.bits));
+  int row = sites.bits != 0u ? inside : above ? carry_above(sites.carry) : carry_below(sites.carry);
   return ivec2(column, row);
 }
 
@@ -50,7 +50,7 @@ ivec2 vertex_before(Hull hull, int column, bool above) {
   uvec4 bits = hull.kept & bits_before(column);
   ivec4 last = mix(findMSB(bits) + CHUNK * ivec4(0, 1, 2, 3), ivec4(-1), equal(bits, uvec4(0u)));
   int found = max(max(last.x, last.y), max(last.z, last.w)) + window;
-  return found < window ? NO_VERTEX : site_of(found, word_at(max(found, 0)), above);
+  return found < window ? NO_VERTEX : site_of(found, column_at(max(found, 0)), above);
 }
 
 void pop(inout Hull hull, bool above) {
@@ -83,8 +83,8 @@ void main() {
   for (int chunk = 0; chunk < chunks + 3; ++chunk) {
     window = (chunk - 3) * CHUNK;
     for (int column = chunk * CHUNK; column < min((chunk + 1) * CHUNK, columns); ++column) {
-      uvec2 sites = word_at(column);
-      if (sites.x != 0u) inside.w |= 1u << (column & (CHUNK - 1));
+      Column sites = column_at(column);
+      if (sites.bits != 0u) inside.w |= 1u << (column & (CHUNK - 1));
       add(above, site_of(column, sites, true), true);
       add(below, site_of(column, sites, false), false);
     }

@@ -65,7 +65,7 @@ void main() {
 #if DEPTH_AWARE
   if (!is_site(pixel, device_depth)) return;
 #endif
-  imageAtomicOr(tested, ivec3(pixel.x, pixel.y / WORD, push.layer), 1u << (pixel.y % WORD));
+  imageAtomicOr(words, ivec3(pixel.x, pixel.y / WORD, push.layer), 1u << (pixel.y % WORD));
 #if REACHING
   if (!is_background(device_depth)) atomicMax(reached[0], uint(pixels_of_reach(pixel, device_depth)));
 #endif

@@ -28,13 +28,19 @@ uint pack_carry(int above, int below) { return uint(above - NONE_ABOVE) | uint(b
 int carry_above(uint carry) { return int(carry & 0xFFFFu) + NONE_ABOVE; }
 int carry_below(uint carry) { return int(carry >> 16); }
 
+// The part of a column that a word of rows sees.
+struct Column {
+  uint bits, carry;
+};
+const Column EMPTY_COLUMN = Column(0u, uint(NONE_BELOW) << 16);  // pack_carry(NONE_ABOVE, NONE_BELOW)
+
 // Row of the site of a column that is nearest to row `y`, which lies in the word that begins at row `first`; the upper one of two
-// at the same distance. `word`: bits and carry. Not a row (is_row) when the column has no site.
-int nearest_in_column(uvec2 word, int first, int y) {
+// at the same distance. Not a row (is_row) when the column has no site.
+int nearest_in_column(Column column, int first, int y) {
   uint up_to = 0xFFFFFFFFu >> uint(first + WORD - 1 - y);  // rows up to and including y
-  int low = findMSB(word.x & up_to), high = findLSB(word.x & ~up_to);
-  int above = low >= 0 ? first + low : carry_above(word.y);
-  int below = high >= 0 ? first + high : carry_below(word.y);
+  int low = findMSB(column.bits & up_to), high = findLSB(column.bits & ~up_to);
+  int above = low >= 0 ? first + low : carry_above(column.carry);
+  int below = high >= 0 ? first + high : carry_below(column.carry);
   return y - above <= below - y ? above : below;
 }
 bool is_row(int row) { return row >= 0 && row < NONE_BELOW; }
