@@ -19,7 +19,7 @@ namespace {
 constexpr uint32_t kBand = 4096;  // columns that an invocation of distance_transform_envelope takes
 constexpr uint32_t kPruneGroup = 32, kPruneSpan = 256;  // invocations and columns of distance_transform_prune
 constexpr uint32_t kFoundGroup = 64;                    // of distance_transform_resolve
-constexpr uint64_t kFarArguments = 16;  // bytes: place of the second of two lists' arguments
+constexpr uint64_t kFarArguments = 16;                  // bytes: place of the second of two lists' arguments
 
 // Lengths of jump flooding's steps, in order.
 std::vector<uint32_t> flood_steps(const std::string& variant, Extent size) {
