@@ -185,13 +185,17 @@ void Device::check_features() {
   if (!have.shaderOutputLayer)
     fail(fmt::format("'{}' cannot choose a layer in the vertex shader", info_.name), {}, {},
          "Gnomon needs the Vulkan 1.2 feature shaderOutputLayer");
-  VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+  VkPhysicalDeviceVulkan13Properties sizes{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES};
+  VkPhysicalDeviceVulkan11Properties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
+                                               &sizes};
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups, {}};
   vkGetPhysicalDeviceProperties2(physical_, &properties);
-  if (!(subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT))
-    fail(fmt::format("'{}' cannot shuffle values of a subgroup", info_.name), {}, {},
-         "Gnomon needs VK_SUBGROUP_FEATURE_SHUFFLE_BIT");
   subgroup_size_ = subgroups.subgroupSize;
+  if (!(subgroups.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) || subgroup_size_ < 4 ||
+      !(sizes.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT))
+    fail(fmt::format("'{}' has no compute subgroups that can shuffle", info_.name), {}, {},
+         "Gnomon needs subgroups of 4 invocations or more, VK_SUBGROUP_FEATURE_SHUFFLE_BIT, and compute in "
+         "requiredSubgroupSizeStages");
 }
 
 void Device::make_device() {

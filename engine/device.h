@@ -28,7 +28,7 @@ class Device {
   VkQueue queue() const { return queue_; }
   uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
-  uint32_t subgroup_size() const { return subgroup_size_; }  // invocations
+  uint32_t subgroup_size() const { return subgroup_size_; }  // invocations, at least 4
   const DeviceInfo& info() const { return info_; }
   double timestamp_period_ns() const { return properties_.limits.timestampPeriod; }
 
