@@ -46,9 +46,9 @@ class DistanceTransform : public Pass {
     const Defines mode_defines = modes();
     const auto compute = [&](const char* name, Defines more = {}) {
       more.insert(more.end(), mode_defines.begin(), mode_defines.end());
-      more.emplace_back(kSubgroupSize, std::to_string(e.device().subgroup_size()));
       return e.compute(fmt::format("distance_transform_{}.glsl", name), std::move(more));
     };
+    const Defines::value_type subgroup{kSubgroupSize, std::to_string(e.device().subgroup_size())};
     pack_ = compute("pack");
     carry_ = compute("carry");
     if (listed_) {
@@ -59,7 +59,7 @@ class DistanceTransform : public Pass {
     if (algorithm_ == "banded_exact") {
       prune_ = compute("prune");
       for (uint32_t band = 0; band < 3; ++band)
-        envelope_[band] = compute("envelope", {{"BAND", std::to_string(band)}});
+        envelope_[band] = compute("envelope", {{"BAND", std::to_string(band)}, subgroup});
     }
     if (algorithm_ == "jump_flooding") {
       seed_ = compute("seed");
@@ -73,7 +73,8 @@ class DistanceTransform : public Pass {
     tile_columns_ = compute("tile_columns");
     tile_rows_ = compute("tile_rows");
     candidate_arguments_ = compute("candidate_arguments");
-    for (const bool far : {false, true}) search_[far] = compute("search", {{"FAR_SITES", far ? "1" : "0"}});
+    for (const bool far : {false, true})
+      search_[far] = compute("search", {{"FAR_SITES", far ? "1" : "0"}, subgroup});
   }
 
   void record(Context& c) override {

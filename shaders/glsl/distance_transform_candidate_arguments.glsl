@@ -1,6 +1,5 @@
 // The workgroups of the search of the candidates: of the one that the frame's radius asks for, and none of the other.
 #include "distance_transform_radius.glsl"
-#include "lib/distance_transform.glsl"
 #include "lib/tiles.glsl"
 
 layout(local_size_x = 1) in;

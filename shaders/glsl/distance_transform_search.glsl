@@ -84,7 +84,7 @@ uint site_of(int pixel) {
   if (best[pixel] >= none) return NO_SITE;
   int d = int(best[pixel] >> 1 & ((1u << COLUMN_BITS) - 1u)) - COLUMN_BIAS;
   int rows = int(round(sqrt(float(squared_of(pixel) - square(d - pixel)))));  // squares below 2^20 have exact roots
-  return pack_site(tile.origin + ivec2(d, y - tile.origin.y + ((best[pixel] & 1u) != 0u ? -rows : rows)));
+  return pack_site(ivec2(tile.origin.x + d, (best[pixel] & 1u) != 0u ? y - rows : y + rows));
 }
 
 #endif
@@ -95,17 +95,19 @@ int farthest() {
   return most;
 }
 
+// The i-th column, from the tile's first, of those that are tried once `j` have been on each side of the tile's middle.
+int column_of(int i, int j) { return i < SIDE ? HALF - 1 - j - i : HALF + j + i - SIDE; }
+
 // From the middle of the tile to both sides; the first columns outside are 1 pixel away.
 void search(int radius) {
-  int width = imageSize(words).x, lane = int(gl_SubgroupInvocationID) % (2 * SIDE);
-  int nearest_one = lane < SIDE ? HALF - 1 - lane : HALF + lane - SIDE, outward = lane < SIDE ? -1 : 1;
+  int width = imageSize(words).x, own = int(gl_SubgroupInvocationID) % (2 * SIDE);
   for (int j = 0; j < HALF + radius && any_of_subgroup(j < HALF || square(j - HALF + 1) < farthest()); j += SIDE) {
-    int x = tile.origin.x + nearest_one + outward * j;
+    int x = tile.origin.x + column_of(own, j);
     Column mine = load_column(clamp(x, 0, width - 1), word, tile.layer);
     if (x < 0 || x >= width) mine = EMPTY_COLUMN;
     for (int i = 0; i < 2 * SIDE; ++i) {
       Column column = Column(subgroupShuffle(mine.bits, i), subgroupShuffle(mine.carry, i));
-      try_column(i < SIDE ? HALF - 1 - i - j : HALF + i - SIDE + j, column);
+      try_column(column_of(i, j), column);
     }
   }
 }

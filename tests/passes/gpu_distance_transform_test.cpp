@@ -78,7 +78,7 @@ TEST_F(DistanceTransform, LongImagesAreExact) {
     const Image dense = distance_oracle::random_mask(width, height, 0.3, 6);
     for (const Image* mask : {&ends, &sparse, &dense}) {
       EXPECT_EQ(count_wrong(*mask, transform(*mask, {.algorithm = "banded_exact"})), 0u) << width;
-      for (const uint32_t radius : {512u, 513u})  // the last and the first of the two searches
+      for (const uint32_t radius : {512u, 513u, 700u})  // where the two searches meet, and beyond
         EXPECT_EQ(
             count_wrong(*mask, transform(*mask, {.algorithm = "bounded_exact", .radius = radius}), radius),
             0u)
