@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "engine/context.h"
 #include "engine/error.h"
@@ -17,6 +18,7 @@ using namespace distance_transform;
 namespace {
 
 constexpr uint32_t kBand = 4096;  // columns that an invocation of distance_transform_envelope takes
+constexpr uint32_t kPackGroup = 32, kPackSquare = 16;   // invocations of distance_transform_pack, of a square at most
 constexpr uint32_t kPruneGroup = 32, kPruneSpan = 256;  // invocations and columns of distance_transform_prune
 constexpr uint32_t kFoundGroup = 64;                    // of distance_transform_resolve
 constexpr uint64_t kFarArguments = 16;                  // bytes: place of the second of two lists' arguments
@@ -49,13 +51,13 @@ class DistanceTransform : public Pass {
       return e.compute(fmt::format("distance_transform_{}.glsl", name), std::move(more));
     };
     const Defines::value_type subgroup{kSubgroupSize, std::to_string(e.device().subgroup_size())};
-    pack_ = compute("pack");
+    squares_ = kPackGroup / std::min(e.device().subgroup_size(), kPackSquare);
+    pack_ = compute("pack", {subgroup});
     carry_ = compute("carry");
     if (listed_) {
       found_arguments_ = compute("arguments", list("found_arguments", kFoundGroup));
       resolve_ = compute("resolve");
     }
-    arguments_ = compute("arguments", list("arguments", 1));
     if (algorithm_ == "banded_exact") {
       prune_ = compute("prune");
       for (uint32_t band = 0; band < 3; ++band)
@@ -68,11 +70,10 @@ class DistanceTransform : public Pass {
     }
     if (algorithm_ != "bounded_exact") {
       all_tiles_ = compute("all_tiles");
+      arguments_ = compute("arguments", list("arguments", 1));
       return;
     }
-    tile_columns_ = compute("tile_columns");
-    tile_rows_ = compute("tile_rows");
-    candidate_arguments_ = compute("candidate_arguments");
+    candidates_ = compute("candidates");
     for (const bool far : {false, true})
       search_[far] = compute("search", {{"FAR_SITES", far ? "1" : "0"}, subgroup});
   }
@@ -113,6 +114,7 @@ class DistanceTransform : public Pass {
     depth_aware_ = depth && geometric && p.choice("sites") == "silhouette";
     reach_ = float(0.5 * penumbra_width(e.scene(), p));
     reaching_ = p.choice("algorithm") == "bounded_exact" && reach_ > 0;
+    radius_ = std::max(int32_t(p.integer("radius")), int32_t(std::ceil(0.5 * p.number("pixels"))));
     if (reaching_ && !depth)
       fail(fmt::format("pass '{}' has a penumbra in world units but no depth", e.id()), {}, "penumbra",
            "connect depth, or give the radius in pixels");
@@ -143,7 +145,7 @@ class DistanceTransform : public Pass {
       c.own_barrier();
     }
     c.push(pack_, std::array<uint32_t, 3>{size.width, size.height, layer});
-    c.dispatch(pack_, divide_up(size.width, 128), divide_up(size.height, kWord));
+    c.dispatch(pack_, divide_up(size.width, kWord * squares_), divide_up(size.height, kWord));
     if (!listed_) return;
     c.own_barrier();
     c.dispatch(found_arguments_, 1);
@@ -207,22 +209,16 @@ class DistanceTransform : public Pass {
   }
 
   void search(Context& c, const ImageShape& shape) const {
-    const uint32_t x = divide_up(shape.extent.width, kTile), y = divide_up(shape.extent.height, kTile);
     c.fill("arguments", 0);
     c.fill("candidate_arguments", 0);
     c.clear("nearest", ~0u);
     c.own_barrier();
-    c.dispatch(tile_columns_, divide_up(x, 8), shape.layers);
-    c.own_barrier();
-    c.dispatch(tile_rows_, divide_up(x, 8), y, shape.layers);
-    c.own_barrier();
-    c.dispatch(candidate_arguments_, 1);
+    for (const Pipeline* pipeline : {&candidates_, &search_[0], &search_[1]}) c.push(*pipeline, radius_);
+    c.dispatch(candidates_, divide_up(shape.extent.height, kWord), shape.layers);
     c.own_barrier();
     c.section("search");
     c.dispatch_indirect(search_[0], "candidate_arguments");
     c.dispatch_indirect(search_[1], "candidate_arguments", kFarArguments);
-    c.own_barrier();
-    c.dispatch(arguments_, 1);
   }
 
   struct Resolve {  // push constants
@@ -231,14 +227,16 @@ class DistanceTransform : public Pass {
   };
 
   std::string algorithm_;
-  float reach_ = 0;
+  float reach_ = 0;     // world units
+  int32_t radius_ = 1;  // pixels; the least one of bounded_exact
   std::vector<uint32_t> steps_;
+  uint32_t squares_ = 1;  // of 32x32 pixels, of a workgroup of distance_transform_pack
   bool depth_aware_ = false, reaching_ = false, listed_ = false;
   Pipeline pack_, found_arguments_, resolve_, carry_, arguments_, all_tiles_;
   Pipeline prune_;
   Pipeline envelope_[3];  // whole rows, sweep of a band, colouring of a band
   Pipeline seed_, flood_[2];
-  Pipeline tile_columns_, tile_rows_, candidate_arguments_;
+  Pipeline candidates_;
   Pipeline search_[2];  // for small radii, for large ones
 };
 

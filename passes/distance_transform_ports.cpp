@@ -54,7 +54,6 @@ void declare_lists(Declaration& d, const ImageShape& source, const std::string& 
   d.output_buffer("arguments", kArguments, {4, 4, "uint"},
                   "workgroups (x, y, z) of an indirect dispatch of one a tile, and the number of tiles");
   if (!bounded(algorithm)) return;
-  d.transient_buffer("tile_gaps", kBoth, {tiles, 4, "int"}, "rows between a tile and its column's sites");
   d.transient_buffer("candidates", kBoth, {tiles, 4, "uint"}, "tiles that may have a site within the radius");
   d.transient_buffer("candidate_arguments", kArguments, {8, 4, "uint"},
                      "of their dispatch for small radii, then of that for large ones");

@@ -12,7 +12,9 @@ class ImageSource : public Pass {
   void declare(Declaration& d) const override {
     d.darkens_lit_surfaces();  // whatever the scene casts
     d.summary("Shows an image that the program gives (RenderSettings::images), as if a pass had made it.");
-    d.output("value", Access::transfer_write, true, {d.setting().viewport, 1, 1, VK_FORMAT_R32_SFLOAT},
+    const bool mask = d.flag("mask", false, "1 where the image is not 0, in 8 bits a pixel");
+    d.output("value", Access::transfer_write, true,
+             {d.setting().viewport, 1, 1, mask ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT},
              "the image's first channel");
   }
 
@@ -25,7 +27,12 @@ class ImageSource : public Pass {
     if (image.channels.empty() || image.width != size.width || image.height != size.height)
       fail(fmt::format("pass '{}' shows {}x{} pixels, but its image has {}x{}", e.id(), size.width,
                        size.height, image.width, image.height));
-    texels_ = e.upload(std::as_bytes(image.plane(0)), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    const auto values = image.plane(0);
+    std::vector<uint8_t> mask;
+    if (e.params().flag("mask"))
+      for (const float value : values) mask.push_back(value != 0 ? 255 : 0);
+    texels_ = e.upload(mask.empty() ? std::as_bytes(std::span(values)) : std::as_bytes(std::span(mask)),
+                       VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   }
 
   void record(Context& c) override { c.copy(texels_, "value"); }

@@ -39,7 +39,7 @@ Graph edt_graph(const EdtSettings& settings) {
   const nlohmann::json graph = {{"schema", 1},
                                 {"name", "edt"},
                                 {"passes",
-                                 {{{"id", "mask"}, {"type", "image_source"}},
+                                 {{{"id", "mask"}, {"type", "image_source"}, {"params", {{"mask", true}}}},
                                   {{"id", "transform"},
                                    {"type", "distance_transform"},
                                    {"in", {{"source", "mask.value"}}},

@@ -112,6 +112,13 @@ void search(int radius) {
   }
 }
 
+void list(uint candidate) {
+  uint slot = atomicAdd(arguments[3], 1u);
+  tiles[slot] = candidate;
+  uvec3 groups = tile_workgroups(slot + 1u);
+  for (int i = 0; i < 3; ++i) atomicMax(arguments[i], groups[i]);
+}
+
 void main() {
   uint index = tile_index(gl_WorkGroupID);
   if (index >= candidate_arguments[3]) return;
@@ -133,5 +140,5 @@ void main() {
   }
   if (found_any || KEEP_ALL == 1) atomicOr(reached_any, 1u);
   barrier();
-  if (gl_LocalInvocationID.x == 0u && reached_any != 0u) tiles[atomicAdd(arguments[3], 1u)] = candidates[index];
+  if (gl_LocalInvocationID.x == 0u && reached_any != 0u) list(candidates[index]);
 }

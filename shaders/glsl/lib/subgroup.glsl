@@ -7,9 +7,12 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 
 const uint SUBGROUP_INVOCATIONS = min(uint(SUBGROUP_SIZE), gl_WorkGroupSize.x);
+const int SUBGROUP_HALVINGS = SUBGROUP_INVOCATIONS > 64u ? 7 : SUBGROUP_INVOCATIONS > 32u ? 6 : SUBGROUP_INVOCATIONS > 16u ? 5 :
+                              SUBGROUP_INVOCATIONS > 8u ? 4 : SUBGROUP_INVOCATIONS > 4u ? 3 : 2;
 
+// Counted in steps of one, so that compilers unroll it.
 int max_of_subgroup(int v) {
-  for (uint apart = 1u; apart < SUBGROUP_INVOCATIONS; apart *= 2u) v = max(v, subgroupShuffleXor(v, apart));
+  for (int i = 0; i < SUBGROUP_HALVINGS; ++i) v = max(v, subgroupShuffleXor(v, 1u << i));
   return v;
 }
 bool any_of_subgroup(bool v) { return max_of_subgroup(int(v)) != 0; }
