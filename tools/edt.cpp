@@ -36,19 +36,20 @@ Scene least_scene() {
 }
 
 Graph edt_graph(const EdtSettings& settings) {
-  const nlohmann::json graph = {{"schema", 1},
-                                {"name", "edt"},
-                                {"passes",
-                                 {{{"id", "mask"}, {"type", "image_source"}, {"params", {{"mask", true}}}},
-                                  {{"id", "transform"},
-                                   {"type", "distance_transform"},
-                                   {"in", {{"source", "mask.value"}}},
-                                   {"params",
-                                    {{"algorithm", settings.algorithm},
-                                     {"variant", settings.variant},
-                                     {"sites", settings.sites},
-                                     {"radius", settings.radius}}}}}},
-                                {"outputs", {{"nearest", "transform.nearest"}}}};
+  const nlohmann::json graph = {
+      {"schema", 1},
+      {"name", "edt"},
+      {"passes",
+       {{{"id", "mask"}, {"type", "image_source"}, {"params", {{"mask", settings.sites == "nonzero"}}}},
+        {{"id", "transform"},
+         {"type", "distance_transform"},
+         {"in", {{"source", "mask.value"}}},
+         {"params",
+          {{"algorithm", settings.algorithm},
+           {"variant", settings.variant},
+           {"sites", settings.sites},
+           {"radius", settings.radius}}}}}},
+      {"outputs", {{"nearest", "transform.nearest"}}}};
   return parse_graph(graph.dump(), "edt");
 }
 
