@@ -79,26 +79,39 @@ void resume(int entries) {
   }
 }
 
+void add_column(int x, int word, int layer) {
+  int row = nearest_in_column(load_column(x, word, layer), word * WORD, y);
+  bool is_site = is_row(row);
+  Entry e = make_entry(ivec2(x, row));
+  int start = count > 0 ? start_of(top, e) : 0;
+  bool hides = is_site && count > 0 && start <= top_start;
+  do {
+    pop(hides);
+    start = count > 0 ? start_of(top, e) : 0;
+    hides = hides && count > 0 && start <= top_start;
+  } while (hides);
+  if (is_site && start < row_length) push(e, start);
+}
+
 void find_proximate(int word, int layer) {
-  for (int chunk = stripe.begin; chunk < stripe.end; chunk += CHUNK)
-    for (uint columns = imageLoad(kept, ivec3(chunk / CHUNK, word, layer)).x; columns != 0u; columns &= columns - 1u) {
-      int x = chunk + findLSB(columns), row = nearest_in_column(load_column(x, word, layer), word * WORD, y);
-      bool is_site = is_row(row);
-      Entry e = make_entry(ivec2(x, row));
-      int start = count > 0 ? start_of(top, e) : 0;
-      while (is_site && count > 0 && start <= top_start) {
-        pop(true);
-        start = count > 0 ? start_of(top, e) : 0;
-      }
-      if (is_site && start < row_length) push(e, start);
-    }
+  for (int chunk = stripe.begin; chunk < stripe.end; chunk += CHUNK) {
+    uint columns = imageLoad(kept, ivec3(chunk / CHUNK, word, layer)).x;
+    if (columns == 0u) continue;
+    do {
+      add_column(chunk + findLSB(columns), word, layer);
+      columns &= columns - 1u;
+    } while (columns != 0u);
+  }
 }
 
 // In runs of pixels on which no row's top changes.
 void colour() {
   for (int x = stripe.end - 1; x >= stripe.begin;) {
-    int last_start = max_of_subgroup(count > 1 ? top_start : -1);
-    for (; x >= max(last_start, stripe.begin); --x) rows[row_begin + x] = top.site;
+    int last = max(max_of_subgroup(count > 1 ? top_start : 0), stripe.begin);
+    do {
+      rows[row_begin + x] = top.site;
+      --x;
+    } while (x >= last);
     pop(count > 1 && top_start > x);
   }
 }

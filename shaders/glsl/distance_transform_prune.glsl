@@ -59,12 +59,20 @@ void pop(inout Hull hull, bool above) {
   hull.second = vertex_before(hull, hull.top.x, above);
 }
 
-void add(inout Hull hull, ivec2 site, bool above) {
-  if (!is_row(site.y)) return;
+// Does `site` hide the hull's last vertex, on all rows of the word?
+bool hides_top(Hull hull, ivec2 site) {
   int first = word * WORD, last = first + WORD - 1;
-  while (hull.second != NO_VERTEX && hull.top.x >= window && hidden(hull.second, hull.top, site, first) &&
-         hidden(hull.second, hull.top, site, last))
-    pop(hull, above);
+  return hull.second != NO_VERTEX && hull.top.x >= window && hidden(hull.second, hull.top, site, first) &&
+         hidden(hull.second, hull.top, site, last);
+}
+
+void add(inout Hull hull, ivec2 site, bool above) {
+  bool is_site = is_row(site.y), hides = is_site && hides_top(hull, site);
+  do {  // once more than needed, as software devices run a loop's body at least once whatever its condition
+    if (hides) pop(hull, above);
+    hides = hides && hides_top(hull, site);
+  } while (hides);
+  if (!is_site) return;
   hull.kept.w |= 1u << (site.x & (CHUNK - 1));
   hull.second = hull.top;
   hull.top = site;
@@ -82,12 +90,13 @@ void main() {
   int columns = min(SPAN, size.x - begin), chunks = (columns + CHUNK - 1) / CHUNK;
   for (int chunk = 0; chunk < chunks + 3; ++chunk) {
     window = (chunk - 3) * CHUNK;
-    for (int column = chunk * CHUNK; column < min((chunk + 1) * CHUNK, columns); ++column) {
-      Column sites = column_at(column);
-      if (sites.bits != 0u) inside.w |= 1u << (column & (CHUNK - 1));
-      add(above, site_of(column, sites, true), true);
-      add(below, site_of(column, sites, false), false);
-    }
+    int column = chunk * CHUNK, end = min(column + CHUNK, columns);
+    if (column < end) do {
+        Column sites = column_at(column);
+        if (sites.bits != 0u) inside.w |= 1u << (column & (CHUNK - 1));
+        add(above, site_of(column, sites, true), true);
+        add(below, site_of(column, sites, false), false);
+      } while (++column < end);
     uvec4 kept_columns = inside | above.kept | below.kept;
     if (chunk >= 3) imageStore(kept, ivec3(begin / CHUNK + chunk - 3, word, layer), uvec4(kept_columns.x));
     above.kept = uvec4(above.kept.yzw, 0u);
