@@ -79,10 +79,9 @@ void resume(int entries) {
   }
 }
 
-void add_column(int x, int word, int layer) {
-  int row = nearest_in_column(load_column(x, word, layer), word * WORD, y);
-  bool is_site = is_row(row);
-  Entry e = make_entry(ivec2(x, row));
+void add_site(ivec2 site) {
+  bool is_site = is_row(site.y);
+  Entry e = make_entry(site);
   int start = count > 0 ? start_of(top, e) : 0;
   bool hides = is_site && count > 0 && start <= top_start;
   do {
@@ -93,13 +92,21 @@ void add_column(int x, int word, int layer) {
   if (is_site && start < row_length) push(e, start);
 }
 
+// The site of a column that is nearest on this row.
+ivec2 site_in(int x, int word, int layer) {
+  return ivec2(x, nearest_in_column(load_column(x, word, layer), word * WORD, y));
+}
+
 void find_proximate(int word, int layer) {
   for (int chunk = stripe.begin; chunk < stripe.end; chunk += CHUNK) {
     uint columns = imageLoad(kept, ivec3(chunk / CHUNK, word, layer)).x;
     if (columns == 0u) continue;
+    ivec2 site = site_in(chunk + findLSB(columns), word, layer);
     do {
-      add_column(chunk + findLSB(columns), word, layer);
       columns &= columns - 1u;
+      ivec2 next = site_in(chunk + max(findLSB(columns), 0), word, layer);  // loaded while this one is added
+      add_site(site);
+      site = next;
     } while (columns != 0u);
   }
 }
