@@ -79,16 +79,19 @@ void resume(int entries) {
   }
 }
 
+// Is the top, where it begins to be nearest, farther than `e`? Then it is so everywhere: e's share of the row lies to the right. The
+// same as start_of(top, e) <= top_start, without its division.
+bool hides_top(Entry e) { return e.lift - top.lift < 2 * (e.x - top.x) * top_start; }
+
 void add_site(ivec2 site) {
   bool is_site = is_row(site.y);
   Entry e = make_entry(site);
-  int start = count > 0 ? start_of(top, e) : 0;
-  bool hides = is_site && count > 0 && start <= top_start;
+  bool hides = is_site && count > 0 && hides_top(e);
   do {
     pop(hides);
-    start = count > 0 ? start_of(top, e) : 0;
-    hides = hides && count > 0 && start <= top_start;
+    hides = hides && count > 0 && hides_top(e);
   } while (hides);
+  int start = count > 0 ? start_of(top, e) : 0;
   if (is_site && start < row_length) push(e, start);
 }
 
