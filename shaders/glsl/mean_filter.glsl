@@ -96,12 +96,16 @@ void filter_cell(Strip strip, int cell) {
   int first = strip.reach + 1 + cell * CELL;
   bool needed = is_needed(strip, cell), filtered = needed && changes_along(strip, cell);
   load_edges(first);
-  for (int place = first; place < first + (filtered ? CELL : 0); ++place)
-    store(pixel_of(strip, place), strip.layer, mean(place, first, half_width(depths[place * LINES + line()])));
-  for (int place = first; place < first + (needed && !filtered ? CELL : 0); ++place) {
-    ivec2 pixel = pixel_of(strip, place);
-    store(pixel, strip.layer, source_at(pixel, strip.layer));
-  }
+  int place = first;
+  if (filtered) do {
+      store(pixel_of(strip, place), strip.layer, mean(place, first, half_width(depths[place * LINES + line()])));
+    } while (++place < first + CELL);
+#ifndef ALONG_Y_AXIS  // where all that is needed is filtered
+  else if (needed) do {
+      ivec2 pixel = pixel_of(strip, place);
+      store(pixel, strip.layer, source_at(pixel, strip.layer));
+    } while (++place < first + CELL);
+#endif
 }
 
 void main() {
@@ -109,5 +113,7 @@ void main() {
   sum_part(strip);
   barrier();
   load_sums();
-  for (int cell = part(); cell < STRIP; cell += PARTS) filter_cell(strip, cell);
+  int cell = part();
+  do filter_cell(strip, cell);
+  while ((cell += PARTS) < STRIP);
 }

@@ -48,7 +48,11 @@ bool changes(ivec2 first, ivec2 last, int light) {
   first = max(first, ivec2(0));
   last = min(last, cells - 1);
   uint seen = 0u;
-  for (int y = first.y; y <= last.y; ++y)
-    for (int x = first.x; x <= last.x; ++x) seen |= cell_states[(light * cells.y + y) * cells.x + x];
+  int y = first.y;
+  do {
+    int x = first.x;
+    do seen |= cell_states[(light * cells.y + y) * cells.x + x];
+    while (++x <= last.x);
+  } while (++y <= last.y);
   return seen == HOLDS_BOTH;
 }

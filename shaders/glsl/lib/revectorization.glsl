@@ -45,7 +45,8 @@ float rbsm_walk(ivec2 texel, ivec2 direction, float to_border, bool lit, bool si
   float lowering = 0.0;
   float whole = 0.0;
   bool found_end = false, going = true;
-  for (int i = 0; i < max_size && going; ++i) {
+  int steps = 0;
+  do {
     texel += direction;
     if (rbsm_lit(texel, lowering) != lit) {
       found_end = true;
@@ -56,7 +57,7 @@ float rbsm_walk(ivec2 texel, ivec2 direction, float to_border, bool lit, bool si
       going = shares;
       if (shares) whole += 1.0;
     }
-  }
+  } while (going && ++steps < max_size);
   // On the texel's very border (c = 0) the sum may be zero, which has no sign, and (3.4) would see another shape.
   float distance = whole + max(to_border, 1e-6);
   return found_end ? distance : -distance;
