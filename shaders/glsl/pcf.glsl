@@ -10,14 +10,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // be read two by two. `border`: weights of the first and of the last texel of a row; the others weigh 1.
 float box(Query query, ivec2 first, vec2 border_x, vec2 border_y) {
   float sum = 0.0;
-  for (int y = 0; y <= params.kernel; y += 2) {
+  int y = 0;
+  do {
     vec2 wy = vec2(y == 0 ? border_y.x : 1.0, y + 1 > params.kernel - 1 ? border_y.y : 1.0);
-    for (int x = 0; x <= params.kernel; x += 2) {
+    int x = 0;
+    do {
       vec2 wx = vec2(x == 0 ? border_x.x : 1.0, x + 1 > params.kernel - 1 ? border_x.y : 1.0);
       vec4 lit = lit_quad(query, first + ivec2(x, y));
       sum += wy.x * (wx.x * lit.w + wx.y * lit.z) + wy.y * (wx.x * lit.x + wx.y * lit.y);
-    }
-  }
+    } while ((x += 2) <= params.kernel);
+  } while ((y += 2) <= params.kernel);
   return sum / float(params.kernel * params.kernel);
 }
 
@@ -32,11 +34,12 @@ float filtered(Query query, ivec2 pixel) {
   const float TURN = 6.28318531;  // radians
   float rotation = ROTATE == 1 ? TURN * interleaved_gradient_noise(pixel) : 0.0;
   float sum = 0.0;
-  for (int i = 0; i < params.samples; ++i) {
+  int i = 0;
+  do {
     vec2 at = query.position + 0.5 * float(params.kernel) * vogel_point(i, params.samples, rotation);
     ivec2 last = textureSize(shadow_map, 0).xy - 1;
     sum += is_lit(query, clamp(ivec2(floor(at)), ivec2(0), last)) ? 1.0 : 0.0;
-  }
+  } while (++i < params.samples);
   return sum / float(params.samples);
 #endif
 }
