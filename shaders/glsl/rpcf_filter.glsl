@@ -41,7 +41,8 @@ uint walk_beyond(ivec2 texel, ivec2 direction, bool lit, bvec2 sides) {
   bvec3 going = bvec3(sides, any(sides));
   Run runs[3] = Run[3](Run(0, false), Run(0, false), Run(0, false));
   float unused = 0.0;
-  for (int i = 0; i < params.max_size && any(going); ++i) {
+  int steps = 0;
+  if (going.z) do {
     texel += direction;
     bool ends = rbsm_lit(texel, unused) != lit;
     bool a = rbsm_lit(texel - across, unused) != lit, b = rbsm_lit(texel + across, unused) != lit;
@@ -51,7 +52,7 @@ uint walk_beyond(ivec2 texel, ivec2 direction, bool lit, bvec2 sides) {
       going[k] = going[k] && !ends && shares[k];
       if (going[k]) ++runs[k].whole;
     }
-  }
+  } while (any(going) && ++steps < params.max_size);
   return pack_run(runs[0], 0u) | pack_run(runs[1], 1u) | pack_run(runs[2], 2u);
 }
 
@@ -62,14 +63,17 @@ float add_part(float sum, ivec2 first, ivec2 inside, vec2 c) {
   uint rows[WINDOW + 2], columns[WINDOW + 2];
   for (int i = 0; i < WINDOW + 2; ++i) rows[i] = columns[i] = 0u;
   ivec2 window = ivec2(block_size() + 2), origin = first - 1;
-  for (int y = 0; y < window.y; y += 2)
-    for (int x = 0; x < window.x; x += 2) {
+  int y = 0;
+  do {
+    int x = 0;
+    do {
       uvec4 lit = uvec4(lit_quad(query, origin + ivec2(x, y)));
       rows[y] |= (lit.w | lit.z << 1) << x;
       rows[y + 1] |= (lit.x | lit.y << 1) << x;
       columns[x] |= (lit.w | lit.x << 1) << y;
       columns[x + 1] |= (lit.z | lit.y << 1) << y;
-    }
+    } while ((x += 2) < window.x);
+  } while ((y += 2) < window.y);
   uint above[WINDOW], below[WINDOW];
   ivec2 last = window - 1;
   for (int x = 1; x < last.x; ++x) {
