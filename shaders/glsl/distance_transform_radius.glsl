@@ -1,5 +1,7 @@
 // The radius of bounded_exact in this frame, pixels. Squares of radii up to that of the largest image fit 32 bits.
-layout(push_constant) uniform Push { int radius; } push;  // what the parameters ask for; the scene may ask for more
+// What the parameters ask for; the scene may ask for more. Not computed here from the parameters: lavapipe 22.3 crashes when it compiles
+// distance_transform_candidates so.
+layout(push_constant) uniform Push { int radius; } push;
 
 const int MOST_PIXELS = 23170;     // diagonal of 16384 x 16384
 const int MOST_NEAR_RADIUS = 512;  // for which distance_transform_search keeps a pixel's best in one number

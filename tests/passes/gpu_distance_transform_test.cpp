@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <limits>
 
 #include "engine/context.h"
 #include "engine/error.h"
@@ -85,6 +87,16 @@ TEST_F(DistanceTransform, LongImagesAreExact) {
             << width << ", radius " << radius;
     }
   }
+}
+
+TEST_F(DistanceTransform, EveryValueButZeroIsASite) {
+  const float values[] = {0.0f, -0.0f, 1e-40f, -2.0f, 0.5f, std::numeric_limits<float>::infinity()};
+  Image mask(90, 70, {"Y"}), ones(90, 70, {"Y"});
+  for (size_t i = 0; i < mask.data.size(); ++i) {
+    mask.data[i] = i % 397 == 0 ? values[i / 397 % std::size(values)] : 0;
+    ones.data[i] = mask.data[i] != 0;
+  }
+  EXPECT_EQ(count_wrong(ones, transform(mask, {.algorithm = "banded_exact"})), 0u);
 }
 
 TEST_F(DistanceTransform, RepeatsBitForBit) {
