@@ -91,12 +91,14 @@ void main() {
   for (int chunk = 0; chunk < chunks + 3; ++chunk) {
     window = (chunk - 3) * CHUNK;
     int column = chunk * CHUNK, end = min(column + CHUNK, columns);
-    if (column < end) do {
+    if (column < end) {
+      do {
         Column sites = column_at(column);
         if (sites.bits != 0u) inside.w |= 1u << (column & (CHUNK - 1));
         add(above, site_of(column, sites, true), true);
         add(below, site_of(column, sites, false), false);
       } while (++column < end);
+    }
     uvec4 kept_columns = inside | above.kept | below.kept;
     if (chunk >= 3) imageStore(kept, ivec3(begin / CHUNK + chunk - 3, word, layer), uvec4(kept_columns.x));
     above.kept = uvec4(above.kept.yzw, 0u);

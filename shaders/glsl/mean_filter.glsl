@@ -97,14 +97,18 @@ void filter_cell(Strip strip, int cell) {
   bool needed = is_needed(strip, cell), filtered = needed && changes_along(strip, cell);
   load_edges(first);
   int place = first;
-  if (filtered) do {
+  if (filtered) {
+    do {
       store(pixel_of(strip, place), strip.layer, mean(place, first, half_width(depths[place * LINES + line()])));
     } while (++place < first + CELL);
+  }
 #ifndef ALONG_Y_AXIS  // where all that is needed is filtered
-  else if (needed) do {
+  else if (needed) {
+    do {
       ivec2 pixel = pixel_of(strip, place);
       store(pixel, strip.layer, source_at(pixel, strip.layer));
     } while (++place < first + CELL);
+  }
 #endif
 }
 
@@ -114,6 +118,7 @@ void main() {
   barrier();
   load_sums();
   int cell = part();
-  do filter_cell(strip, cell);
-  while ((cell += PARTS) < STRIP);
+  do {
+    filter_cell(strip, cell);
+  } while ((cell += PARTS) < STRIP);
 }

@@ -41,11 +41,13 @@ void main() {
     if (there && !faces) v[i] = unmapped_visibility(PIXEL_AWAY);
     if (there && faces) undecided |= 1u << i;
   }
-  if (undecided != 0u) do {
+  if (undecided != 0u) {
+    do {
       int i = findLSB(undecided);
       v[i] = tested(first + OFFSET[i], depths[i], octahedral_decode(vec2(normals_x[i], normals_y[i])), light, face, size.x);
       undecided &= undecided - 1u;
     } while (undecided != 0u);
+  }
   for (int i = 0; i < 4; ++i) {
     ivec2 at = first + OFFSET[i];
     if (all(lessThan(at, size))) imageStore(visibility, ivec3(at, push.light), vec4(v[i]));

@@ -42,17 +42,19 @@ uint walk_beyond(ivec2 texel, ivec2 direction, bool lit, bvec2 sides) {
   Run runs[3] = Run[3](Run(0, false), Run(0, false), Run(0, false));
   float unused = 0.0;
   int steps = 0;
-  if (going.z) do {
-    texel += direction;
-    bool ends = rbsm_lit(texel, unused) != lit;
-    bool a = rbsm_lit(texel - across, unused) != lit, b = rbsm_lit(texel + across, unused) != lit;
-    bvec3 shares = bvec3(a, b, a || b);
-    for (int k = 0; k < 3; ++k) {
-      if (going[k] && ends) runs[k].found = true;
-      going[k] = going[k] && !ends && shares[k];
-      if (going[k]) ++runs[k].whole;
-    }
-  } while (any(going) && ++steps < params.max_size);
+  if (going.z) {
+    do {
+      texel += direction;
+      bool ends = rbsm_lit(texel, unused) != lit;
+      bool a = rbsm_lit(texel - across, unused) != lit, b = rbsm_lit(texel + across, unused) != lit;
+      bvec3 shares = bvec3(a, b, a || b);
+      for (int k = 0; k < 3; ++k) {
+        if (going[k] && ends) runs[k].found = true;
+        going[k] = going[k] && !ends && shares[k];
+        if (going[k]) ++runs[k].whole;
+      }
+    } while (any(going) && ++steps < params.max_size);
+  }
   return pack_run(runs[0], 0u) | pack_run(runs[1], 1u) | pack_run(runs[2], 2u);
 }
 

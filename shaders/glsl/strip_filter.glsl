@@ -51,8 +51,9 @@ bool changes(ivec2 first, ivec2 last, int light) {
   int y = first.y;
   do {
     int x = first.x;
-    do seen |= cell_states[(light * cells.y + y) * cells.x + x];
-    while (++x <= last.x);
+    do {
+      seen |= cell_states[(light * cells.y + y) * cells.x + x];
+    } while (++x <= last.x);
   } while (++y <= last.y);
   return seen == HOLDS_BOTH;
 }

@@ -80,7 +80,8 @@ TEST_F(DistanceTransform, LongImagesAreExact) {
     const Image dense = distance_oracle::random_mask(width, height, 0.3, 6);
     for (const Image* mask : {&ends, &sparse, &dense}) {
       EXPECT_EQ(count_wrong(*mask, transform(*mask, {.algorithm = "banded_exact"})), 0u) << width;
-      for (const uint32_t radius : {512u, 513u, 700u})  // where the two searches meet, and beyond
+      // Where the two searches meet, beyond that, and the most.
+      for (const uint32_t radius : {512u, 513u, 700u, 16384u})
         EXPECT_EQ(
             count_wrong(*mask, transform(*mask, {.algorithm = "bounded_exact", .radius = radius}), radius),
             0u)
