@@ -20,7 +20,7 @@ namespace {
 constexpr uint32_t kBand = 4096;      // columns that an invocation of distance_transform_envelope takes
 constexpr uint32_t kPackGroup = 32;   // invocations of distance_transform_pack
 constexpr uint32_t kPackSquare = 16;  // of these, that share a square at most (lib/bit_matrix.glsl)
-constexpr uint32_t kPruneGroup = 32, kPruneSpan = 256;  // invocations and columns of distance_transform_prune
+constexpr uint32_t kPruneGroup = 8, kPruneSpan = 1024;  // invocations and columns of distance_transform_prune
 constexpr uint32_t kFoundGroup = 64;                    // of distance_transform_resolve
 constexpr uint64_t kFarArguments = 16;                  // bytes: place of the second of two lists' arguments
 

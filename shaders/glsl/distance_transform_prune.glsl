@@ -8,10 +8,11 @@
 // a hull each; columns with sites in the word lend one of these. A vertex that is more than three words of columns behind stays.
 #include "distance_transform_column.glsl"
 
-layout(local_size_x = 32) in;
+layout(local_size_x = 8) in;
 
-const int SPAN = 256;            // columns
-const int MOST_RISE = 1 << 23;   // pixels^2: times SPAN it fits 32 bits
+const int SPAN = 1024;           // columns
+const int MOST_APART = 256;      // columns of three vertices of which one may hide another
+const int MOST_RISE = 1 << 23;   // pixels^2: times MOST_APART it fits 32 bits
 const ivec2 NO_VERTEX = ivec2(-1);
 
 struct Hull {
@@ -62,7 +63,7 @@ void pop(inout Hull hull, bool above) {
 // Does `site` hide the hull's last vertex, on all rows of the word?
 bool hides_top(Hull hull, ivec2 site) {
   int first = word * WORD, last = first + WORD - 1;
-  return hull.second != NO_VERTEX && hull.top.x >= window && hidden(hull.second, hull.top, site, first) &&
+  return hull.second != NO_VERTEX && hull.top.x >= window && site.x - hull.second.x <= MOST_APART && hidden(hull.second, hull.top, site, first) &&
          hidden(hull.second, hull.top, site, last);
 }
 
