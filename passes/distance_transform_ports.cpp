@@ -55,8 +55,9 @@ void declare_lists(Declaration& d, const ImageShape& source, const std::string& 
                   "workgroups (x, y, z) of an indirect dispatch of one a tile, and the number of tiles");
   if (!bounded(algorithm)) return;
   d.transient_buffer("candidates", kBoth, {tiles, 4, "uint"}, "tiles that may have a site within the radius");
-  d.transient_buffer("candidate_arguments", kArguments, {8, 4, "uint"},
-                     "of their dispatch for small radii, then of that for large ones");
+  d.transient_buffer(
+      "candidate_arguments", kArguments, {9, 4, "uint"},
+      "of their dispatch for small radii, then of that for large ones; workgroups that are done");
 }
 
 void declare_listed(Declaration& d, const ImageShape& source) {

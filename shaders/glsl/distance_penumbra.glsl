@@ -71,7 +71,7 @@ float world_distance(ivec2 pixel, Receiving p, ivec2 site, int light) {
 float penumbra(bool lit, float part) { return lit ? min(0.5 + part, 1.0) : max(0.5 - part, 0.0); }
 
 void main() {
-  uint index = tile_index(gl_WorkGroupID);
+  uint index = tile_index(gl_WorkGroupID, gl_NumWorkGroups);
   if (index >= arguments[3]) return;
   Tile tile = unpack_tile(tiles[index]);
   ivec2 pixel = tile.origin + ivec2(gl_LocalInvocationID.xy);

@@ -41,13 +41,13 @@ bool in_reach(int row, int tile_x, int across, int radius) {
   return false;
 }
 
-// With the workgroups of the search that the frame's radius asks for; of the other, there are none.
-void list(ivec2 tile, int layer, int radius) {
-  uint slot = atomicAdd(candidate_arguments[3], 1u);
-  candidates[slot] = pack_tile(tile, layer);
+// The workgroups of the search that the frame's radius asks for; of the other, there are none.
+void finish(int radius) {
+  memoryBarrierBuffer();
+  if (!is_last(atomicAdd(candidate_arguments[LISTED_BY], 1u))) return;
   int search = radius > MOST_NEAR_RADIUS ? 4 : 0;
-  uvec3 groups = tile_workgroups(slot + 1u);
-  for (int i = 0; i < 3; ++i) atomicMax(candidate_arguments[search + i], groups[i]);
+  uvec3 groups = tile_workgroups(atomicAdd(candidate_arguments[CANDIDATES], 0u));
+  for (int i = 0; i < 3; ++i) candidate_arguments[search + i] = groups[i];
 }
 
 void main() {
@@ -60,6 +60,9 @@ void main() {
   int rows = min(PER_WORD, across.y - word * PER_WORD);
   for (int i = first; i < rows * across.x; i += step) {
     int row = i / across.x, x = i % across.x;
-    if (KEEP_ALL == 1 || in_reach(row, x, across.x, radius)) list(ivec2(x, word * PER_WORD + row), layer, radius);
+    if (KEEP_ALL == 1 || in_reach(row, x, across.x, radius))
+      candidates[atomicAdd(candidate_arguments[CANDIDATES], 1u)] = pack_tile(ivec2(x, word * PER_WORD + row), layer);
   }
+  barrier();
+  if (first == 0) finish(radius);
 }

@@ -5,6 +5,12 @@ layout(push_constant) uniform Push { int radius; } push;
 
 const int MOST_PIXELS = 23170;     // diagonal of 16384 x 16384
 const int MOST_NEAR_RADIUS = 512;  // for which distance_transform_search keeps a pixel's best in one number
+
+// Words of `candidate_arguments`: the candidates' number, and how many workgroups are done that list candidates and that search them,
+// so that the last one makes a dispatch of what all have listed.
+const int CANDIDATES = 3, LISTED_BY = 7, SEARCHED_BY = 8;
+bool is_last(uint done_before) { return done_before + 1u == gl_NumWorkGroups.x * gl_NumWorkGroups.y; }
+
 int frame_radius() {
 #if REACHING
   return clamp(int(reached[0]), push.radius, MOST_PIXELS);

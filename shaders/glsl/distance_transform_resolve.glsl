@@ -3,6 +3,7 @@
 #include "lib/distance_transform.glsl"
 #include "lib/octahedral.glsl"
 #include "lib/same_surface.glsl"
+#include "lib/tiles.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -57,7 +58,7 @@ int pixels_of_reach(ivec2 pixel, float device_depth) {
 }
 
 void main() {
-  uint slot = gl_WorkGroupID.x * 64u + gl_WorkGroupID.y * 64u * 65535u + gl_LocalInvocationID.x;
+  uint slot = tile_index(gl_WorkGroupID, gl_NumWorkGroups) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
   if (slot >= found_arguments[3]) return;
   ivec2 pixel;
   unpack_site(found[slot], pixel);

@@ -112,16 +112,19 @@ void search(int radius) {
   }
 }
 
-void list(uint candidate) {
-  uint slot = atomicAdd(arguments[3], 1u);
-  tiles[slot] = candidate;
-  uvec3 groups = tile_workgroups(slot + 1u);
-  for (int i = 0; i < 3; ++i) atomicMax(arguments[i], groups[i]);
+void finish() {
+  memoryBarrierBuffer();
+  if (!is_last(atomicAdd(candidate_arguments[SEARCHED_BY], 1u))) return;
+  uvec3 groups = tile_workgroups(atomicAdd(arguments[3], 0u));
+  for (int i = 0; i < 3; ++i) arguments[i] = groups[i];
 }
 
 void main() {
-  uint index = tile_index(gl_WorkGroupID);
-  if (index >= candidate_arguments[3]) return;
+  uint index = tile_index(gl_WorkGroupID, gl_NumWorkGroups);
+  if (index >= candidate_arguments[CANDIDATES]) {
+    if (gl_LocalInvocationID.x == 0u) finish();
+    return;
+  }
   if (gl_LocalInvocationID.x == 0u) reached_any = 0u;
   barrier();
   tile = unpack_tile(candidates[index]);
@@ -140,5 +143,7 @@ void main() {
   }
   if (found_any || KEEP_ALL == 1) atomicOr(reached_any, 1u);
   barrier();
-  if (gl_LocalInvocationID.x == 0u && reached_any != 0u) list(candidates[index]);
+  if (gl_LocalInvocationID.x != 0u) return;
+  if (reached_any != 0u) tiles[atomicAdd(arguments[3], 1u)] = candidates[index];
+  finish();
 }

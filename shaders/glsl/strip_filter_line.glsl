@@ -29,7 +29,7 @@ struct Strip {
 };
 
 Strip strip_of_workgroup() {
-  uint index = tile_index(gl_WorkGroupID);
+  uint index = tile_index(gl_WorkGroupID, gl_NumWorkGroups);
   ivec2 cells = cells_of(image_size());
   Strip strip;
 #ifdef ALONG_Y_AXIS

@@ -5,7 +5,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;  // four pixels an invocation
 
 void main() {
-  uint index = tile_index(gl_WorkGroupID);
+  uint index = tile_index(gl_WorkGroupID, gl_NumWorkGroups);
   if (index >= arguments[3]) return;
   Tile tile = unpack_tile(tiles[index]);
   ivec2 size = image_size(), cells = cells_of(size), corner = tile.origin + 2 * ivec2(gl_LocalInvocationID.xy);

@@ -114,6 +114,11 @@ TEST_F(DistanceTransform, TallImagesAreDoneInStripes) {
   EXPECT_EQ(count_wrong(mask, transform(mask, {.algorithm = "banded_exact"})), 0u);
 }
 
+TEST_F(DistanceTransform, ListsMayBeLongerThanADispatchIsWide) {
+  const Image mask = distance_oracle::random_mask(16384, 1040, 1e-3, 4);  // 66560 tiles, nearly all in reach
+  EXPECT_EQ(count_wrong(mask, transform(mask, {.algorithm = "bounded_exact"}), 32), 0u);
+}
+
 TEST_F(DistanceTransform, JumpFloodingIsNearlyExactAndItsVariantsImproveIt) {
   const Image mask = distance_oracle::random_mask(512, 384, 0.004, 1);
   const auto exact = transform(mask, {.algorithm = "banded_exact"});
@@ -172,7 +177,7 @@ class MarkTiles : public Pass {
     write_text(file, R"(#include "lib/tiles.glsl"
 layout(local_size_x = 16, local_size_y = 16) in;
 void main() {
-  uint index = tile_index(gl_WorkGroupID);
+  uint index = tile_index(gl_WorkGroupID, gl_NumWorkGroups);
   if (index >= arguments[3]) return;
   Tile tile = unpack_tile(tiles[index]);
   ivec2 at = tile.origin + ivec2(gl_LocalInvocationID.xy);

@@ -2,8 +2,8 @@
 // functions.
 //
 // A list is a buffer of packed tiles in no particular order, and a buffer of four arguments: the workgroups (x, y, z) of an
-// indirect dispatch of one workgroup a tile, and the number of tiles. Workgroup g handles tile number g.x + g.y * TILE_ROW, if
-// there is one.
+// indirect dispatch of one workgroup a tile, and the number of tiles. Workgroup g of n handles tile number tile_index(g, n), if there
+// is one.
 #ifndef GNOMON_TILES
 #define GNOMON_TILES
 
@@ -24,8 +24,11 @@ Tile unpack_tile(uint packed) {
   return tile;
 }
 
-// Workgroups that take `count` tiles.
-uvec3 tile_workgroups(uint count) { return uvec3(min(count, TILE_ROW), (count + TILE_ROW - 1u) / TILE_ROW, 1u); }
-uint tile_index(uvec3 workgroup) { return workgroup.x + workgroup.y * TILE_ROW; }
+// Workgroups that take `count` tiles, and hardly any more: software devices spend as much on those that have no tile.
+uvec3 tile_workgroups(uint count) {
+  uint rows = max((count + TILE_ROW - 1u) / TILE_ROW, 1u);
+  return uvec3((count + rows - 1u) / rows, rows, 1u);
+}
+uint tile_index(uvec3 workgroup, uvec3 workgroups) { return workgroup.x + workgroup.y * workgroups.x; }
 
 #endif
