@@ -29,48 +29,38 @@ void find_sites(ivec2 at, out uint sites[ROWS]) {
 
 #else
 
+const int AROUND = ROWS + 2;  // rows, with the one above and the one below
+
+// `bits` << `shift`, to the right when that is negative.
+uint shifted(uint bits, int shift) { return shift >= 0 ? bits << shift : bits >> -shift; }
+
+// Sets the bits of the pixels whose 3x3 window holds a difference inside column `x`, or between it and the column before.
+void add_differences(int x, float column[AROUND], float before[AROUND], inout uint sites[ROWS]) {
+  uint beside = shifted(7u, x - 1), between = shifted(3u, x - 1);  // pixels whose windows hold the column, and both columns
+  for (int r = 0; r < ROWS; ++r) {
+    bool across = column[r] != column[r + 1] || column[r + 1] != column[r + 2];
+    bool along = column[r] != before[r] || column[r + 1] != before[r + 1] || column[r + 2] != before[r + 2];
+    sites[r] |= (across ? beside : 0u) | (along ? between : 0u);
+  }
+}
+
 // Macedo 2018, ch. 4.2.2: pixels that differ from one of their eight neighbours. A window of 3x3 pixels is of one value when all
 // horizontal and vertical neighbours in it are equal.
 void find_sites(ivec2 at, out uint sites[ROWS]) {
-  const int AROUND = ROWS + 2;  // rows, with the one above and the one below
-  uint along[AROUND];           // bit i: do pixels x + i - 1 and x + i of this row differ? Bit 32 is in along_last
-  uint across[AROUND - 1];      // bit i: do this row's and the next one's pixel x + i differ? Bits -1 and 32 in across_ends
-  uint along_last[AROUND], across_ends[AROUND - 1];
-  float before[AROUND];         // last pixel that was seen of each row
-  for (int r = 0; r < AROUND; ++r) along[r] = along_last[r] = 0u;
-  for (int r = 0; r < AROUND - 1; ++r) across[r] = across_ends[r] = 0u;
+  float before[AROUND];
+  for (int r = 0; r < AROUND; ++r) before[r] = 0.0;  // of no effect: both columns are outside of every window
+  for (int r = 0; r < ROWS; ++r) sites[r] = 0u;
   for (int x = -1; x < WORD; x += 2) {
     float left[AROUND], right[AROUND];
     for (int r = 0; r < AROUND; r += 2) {
-      vec4 square = around(at + ivec2(x + 1, r));
-      left[r] = square.w, right[r] = square.z;
-      left[r + 1] = square.x, right[r + 1] = square.y;
+      vec4 values = around(at + ivec2(x + 1, r));
+      left[r] = values.w, right[r] = values.z;
+      left[r + 1] = values.x, right[r + 1] = values.y;
     }
-    bool is_first = x < 0, is_last = x + 1 >= WORD;
-    for (int r = 0; r < AROUND; ++r) {
-      uint of_left = uint(!is_first && before[r] != left[r]), of_right = uint(left[r] != right[r]);
-      along[r] |= is_first ? of_right : of_left << x;
-      if (is_last)
-        along_last[r] = of_right;
-      else if (!is_first)
-        along[r] |= of_right << (x + 1);
-      before[r] = right[r];
-    }
-    for (int r = 0; r < AROUND - 1; ++r) {
-      uint of_left = uint(left[r] != left[r + 1]), of_right = uint(right[r] != right[r + 1]);
-      if (is_first)
-        across_ends[r] |= of_left;
-      else
-        across[r] |= of_left << x;
-      if (is_last)
-        across_ends[r] |= of_right << (WORD - 1);
-      else
-        across[r] |= of_right << (x + 1);
-    }
+    add_differences(x, left, before, sites);
+    add_differences(x + 1, right, left, sites);
+    before = right;
   }
-  for (int r = 0; r < AROUND; ++r) along[r] |= along[r] >> 1 | along_last[r] << (WORD - 1);
-  for (int r = 0; r < AROUND - 1; ++r) across[r] |= across[r] << 1 | across[r] >> 1 | across_ends[r];
-  for (int r = 0; r < ROWS; ++r) sites[r] = along[r] | along[r + 1] | along[r + 2] | across[r] | across[r + 1];
 }
 
 #endif
