@@ -31,7 +31,7 @@ class ImageSource : public Pass {
     std::vector<uint8_t> mask;
     if (e.params().flag("mask"))
       for (const float value : values) mask.push_back(value != 0 ? 255 : 0);
-    texels_ = e.upload(mask.empty() ? std::as_bytes(std::span(values)) : std::as_bytes(std::span(mask)),
+    texels_ = e.upload(mask.empty() ? std::as_bytes(values) : std::as_bytes(std::span(mask)),
                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   }
 

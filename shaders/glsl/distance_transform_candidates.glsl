@@ -1,7 +1,7 @@
 // Lists the tiles that a site may be within the radius of: the distance between the tile and the sites of every column of tiles,
 // from below. A workgroup has the rows of a word, which are those of two tiles.
 #include "distance_transform_column.glsl"
-#include "distance_transform_radius.glsl"
+#include "distance_transform_bounded.glsl"
 #include "lib/tiles.glsl"
 
 layout(local_size_x = 128) in;  // so many that the largest radius in the widest image takes fewer turns than software devices allow
@@ -45,7 +45,7 @@ bool in_reach(int row, int tile_x, int across, int radius) {
 void finish(int radius) {
   memoryBarrierBuffer();
   if (!is_last(atomicAdd(candidate_arguments[LISTED_BY], 1u))) return;
-  int search = radius > MOST_NEAR_RADIUS ? 4 : 0;
+  int search = radius > MOST_NEAR_RADIUS ? FAR_SEARCH : NEAR_SEARCH;
   uvec3 groups = tile_workgroups(atomicAdd(candidate_arguments[CANDIDATES], 0u));
   for (int i = 0; i < 3; ++i) candidate_arguments[search + i] = groups[i];
 }

@@ -79,17 +79,17 @@ void resume(int entries) {
   }
 }
 
-// Is the top, where it begins to be nearest, farther than `e`? Then it is so everywhere: e's share of the row lies to the right. The
-// same as start_of(top, e) <= top_start, without its division.
-bool hides_top(Entry e) { return e.lift - top.lift < 2 * (e.x - top.x) * top_start; }
+// Is there a top that, where it begins to be nearest, is farther than `e`? Then it is so everywhere: e's share of the row lies to
+// the right. The same as start_of(top, e) <= top_start, without its division.
+bool hides_top(Entry e) { return count > 0 && e.lift - top.lift < 2 * (e.x - top.x) * top_start; }
 
 void add_site(ivec2 site) {
   bool is_site = is_row(site.y);
   Entry e = make_entry(site);
-  bool hides = is_site && count > 0 && hides_top(e);
+  bool hides = is_site && hides_top(e);
   do {
     pop(hides);
-    hides = hides && count > 0 && hides_top(e);
+    hides = hides && hides_top(e);
   } while (hides);
   int start = count > 0 ? start_of(top, e) : 0;
   if (is_site && start < row_length) push(e, start);

@@ -5,7 +5,8 @@
 // hull of the points (s, s^2 + (y - r)^2). How far a site's point lies above the chord between two others is linear in y, so that a
 // site that is hidden on the word's first row and on its last is hidden on all rows between. Of a column's sites only three can be
 // nearest: one in the word, for which the column is kept, or the nearest one above or below it. Those above and those below make
-// a hull each; columns with sites in the word lend one of these. A vertex that is more than three words of columns behind stays.
+// a hull each; columns with sites in the word lend one of these. A vertex that is more than three words of columns behind, or
+// whose neighbours are more than MOST_APART columns apart, stays.
 #include "distance_transform_column.glsl"
 
 layout(local_size_x = 8) in;
@@ -63,13 +64,13 @@ void pop(inout Hull hull, bool above) {
 // Does `site` hide the hull's last vertex, on all rows of the word?
 bool hides_top(Hull hull, ivec2 site) {
   int first = word * WORD, last = first + WORD - 1;
-  return hull.second != NO_VERTEX && hull.top.x >= window && site.x - hull.second.x <= MOST_APART && hidden(hull.second, hull.top, site, first) &&
-         hidden(hull.second, hull.top, site, last);
+  return hull.second != NO_VERTEX && hull.top.x >= window && site.x - hull.second.x <= MOST_APART &&
+         hidden(hull.second, hull.top, site, first) && hidden(hull.second, hull.top, site, last);
 }
 
 void add(inout Hull hull, ivec2 site, bool above) {
   bool is_site = is_row(site.y), hides = is_site && hides_top(hull, site);
-  do {  // once more than needed, as software devices run a loop's body at least once whatever its condition
+  do {
     if (hides) pop(hull, above);
     hides = hides && hides_top(hull, site);
   } while (hides);

@@ -2,7 +2,7 @@
 // the tile in registers: what a column's site costs to find is shared by all of its pixels. Columns come in the order of their
 // distance, until none that is left can be nearer; the invocations of a subgroup load one each and hand them to the others.
 #include "distance_transform_column.glsl"
-#include "distance_transform_radius.glsl"
+#include "distance_transform_bounded.glsl"
 #include "lib/tiles.glsl"
 
 layout(local_size_x = 16) in;  // TILE

@@ -64,9 +64,7 @@ void main() {
   float v = unmapped_visibility(state);
 #if USE_MIN_MAX == 1
   int plain = plainly(query);
-  // A loop of one turn or none, which costs nothing where no pixel of a group needs it.
-  for (bool mixed = state == PIXEL_INSIDE && plain == MIXED; mixed; mixed = false) v = clamp(filtered(query, at), 0.0, 1.0);
-  if (state == PIXEL_INSIDE && plain != MIXED) v = plain == PLAINLY_LIT ? 1.0 : 0.0;
+  if (state == PIXEL_INSIDE) v = plain == MIXED ? clamp(filtered(query, at), 0.0, 1.0) : plain == PLAINLY_LIT ? 1.0 : 0.0;
 #else
   float filtered_v = clamp(filtered(query, at), 0.0, 1.0);
   if (state == PIXEL_INSIDE) v = filtered_v;
