@@ -9,11 +9,12 @@
 #include <filesystem>
 #include <new>
 
-#include "bench/run_json.h"
-#include "engine/area_light.h"
-#include "engine/config.h"
-#include "engine/error.h"
-#include "engine/graph.h"
+#include "bench/run/run_json.h"
+#include "engine/base/config.h"
+#include "engine/base/error.h"
+#include "engine/base/resource_root.h"
+#include "engine/graph/graph.h"
+#include "engine/scene/area_light.h"
 
 namespace gnomon {
 namespace {

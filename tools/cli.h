@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/params.h"
-#include "engine/pass.h"
-#include "engine/renderer.h"
-#include "engine/scene.h"
+#include "engine/base/params.h"
+#include "engine/graph/pass.h"
+#include "engine/render/renderer.h"
+#include "engine/scene/scene.h"
 
 namespace CLI {
 class App;

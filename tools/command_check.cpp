@@ -5,11 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/suite.h"
-#include "engine/compile.h"
-#include "engine/config.h"
-#include "engine/error.h"
-#include "engine/graph.h"
+#include "bench/run/suite.h"
+#include "engine/base/config.h"
+#include "engine/base/error.h"
+#include "engine/graph/graph.h"
+#include "engine/light/scene_facts.h"
+#include "engine/plan/compile.h"
 #include "tools/cli.h"
 
 namespace gnomon {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/measure.h"
-#include "engine/error.h"
-#include "engine/image.h"
-#include "engine/metrics.h"
+#include "bench/error/measure.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
+#include "engine/truth/metrics.h"
 #include "tools/cli.h"
 
 namespace gnomon {

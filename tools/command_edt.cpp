@@ -6,9 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/run_json.h"
-#include "bench/statistics.h"
-#include "engine/error.h"
+#include "bench/run/run_json.h"
+#include "bench/run/statistics.h"
+#include "engine/base/error.h"
 #include "tools/cli.h"
 #include "tools/edt.h"
 

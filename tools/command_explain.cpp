@@ -6,11 +6,12 @@
 #include <memory>
 #include <optional>
 
-#include "bench/rounds.h"
-#include "bench/statistics.h"
-#include "engine/compile.h"
-#include "engine/config.h"
-#include "engine/error.h"
+#include "bench/run/rounds.h"
+#include "bench/run/statistics.h"
+#include "engine/base/config.h"
+#include "engine/base/error.h"
+#include "engine/light/scene_facts.h"
+#include "engine/plan/compile.h"
 #include "tools/cli.h"
 
 namespace gnomon {

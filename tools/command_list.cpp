@@ -6,11 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "engine/config.h"
-#include "engine/error.h"
-#include "engine/graph.h"
-#include "engine/metrics.h"
-#include "engine/pass.h"
+#include "engine/base/config.h"
+#include "engine/base/error.h"
+#include "engine/base/resource_root.h"
+#include "engine/graph/graph.h"
+#include "engine/graph/pass.h"
+#include "engine/truth/metrics.h"
 #include "tools/cli.h"
 
 namespace gnomon {

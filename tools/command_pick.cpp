@@ -7,16 +7,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/harness.h"
-#include "bench/pareto.h"
-#include "bench/pick.h"
-#include "bench/progress.h"
-#include "bench/report_rows.h"
-#include "bench/results.h"
-#include "bench/stage.h"
-#include "engine/error.h"
-#include "engine/image.h"
-#include "engine/shader.h"
+#include "bench/report/pareto.h"
+#include "bench/report/pick.h"
+#include "bench/report/report_rows.h"
+#include "bench/run/harness.h"
+#include "bench/run/progress.h"
+#include "bench/run/results.h"
+#include "bench/run/stage.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
+#include "engine/vulkan/shader.h"
 #include "tools/cli.h"
 
 namespace gnomon {

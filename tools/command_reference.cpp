@@ -5,11 +5,11 @@
 #include <cmath>
 #include <memory>
 
-#include "bench/progress.h"
-#include "engine/animation.h"
-#include "engine/error.h"
-#include "engine/image.h"
-#include "engine/reference.h"
+#include "bench/run/progress.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
+#include "engine/scene/animation.h"
+#include "engine/truth/reference.h"
 #include "tools/cli.h"
 
 namespace gnomon {

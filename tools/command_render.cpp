@@ -7,16 +7,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "bench/progress.h"
-#include "bench/rounds.h"
-#include "bench/run_json.h"
-#include "bench/sequence.h"
-#include "bench/truth.h"
-#include "engine/animation.h"
-#include "engine/config.h"
-#include "engine/error.h"
-#include "engine/image.h"
-#include "engine/shader.h"
+#include "bench/error/truth.h"
+#include "bench/run/progress.h"
+#include "bench/run/rounds.h"
+#include "bench/run/run_json.h"
+#include "bench/run/sequence.h"
+#include "engine/base/config.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
+#include "engine/scene/animation.h"
+#include "engine/vulkan/shader.h"
 #include "tools/cli.h"
 #include "tools/output_folder.h"
 

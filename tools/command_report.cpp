@@ -5,9 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/report_data.h"
-#include "engine/error.h"
-#include "engine/image.h"
+#include "bench/report/report_data.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
 #include "tools/cli.h"
 #include "tools/output_folder.h"
 #include "tools/report_page.h"

@@ -5,9 +5,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/error.h"
-#include "engine/graph.h"
-#include "engine/scene.h"
+#include "engine/base/error.h"
+#include "engine/base/resource_root.h"
+#include "engine/graph/graph.h"
+#include "engine/scene/scene.h"
 #include "tools/cli.h"
 #include "tools/scene_generate.h"
 #include "tools/scene_info.h"

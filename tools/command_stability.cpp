@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "bench/progress.h"
-#include "bench/results.h"
-#include "bench/stability.h"
-#include "bench/stability_process.h"
-#include "engine/error.h"
-#include "engine/image.h"
+#include "bench/run/progress.h"
+#include "bench/run/results.h"
+#include "bench/stability/stability.h"
+#include "bench/stability/stability_process.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
 #include "tools/cli.h"
 #include "tools/output_folder.h"
 

@@ -7,10 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "engine/error.h"
-#include "engine/graph.h"
-#include "engine/renderer.h"
-#include "engine/scene.h"
+#include "engine/base/error.h"
+#include "engine/graph/graph.h"
+#include "engine/render/renderer.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {

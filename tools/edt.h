@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/device_info.h"
-#include "engine/image.h"
+#include "engine/image/image.h"
+#include "engine/vulkan/device_info.h"
 
 namespace gnomon {
 

@@ -9,8 +9,9 @@
 #include <sstream>
 #include <vector>
 
-#include "engine/error.h"
-#include "engine/graph.h"
+#include "engine/base/error.h"
+#include "engine/base/resource_root.h"
+#include "engine/graph/graph.h"
 
 namespace gnomon {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <system_error>
 
-#include "engine/error.h"
-#include "engine/image.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
 #include "tools/scenes/scenes.h"
 
 namespace gnomon {

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "engine/animation.h"
+#include "engine/scene/animation.h"
 
 namespace gnomon {
 namespace {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "tests/engine/analytic_scenes.h"
-#include "tests/passes/hard_shadow_run.h"
+#include "engine/light/scene_facts.h"
+#include "tests/engine/truth/analytic_scenes.h"
+#include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
 namespace {

@@ -12,10 +12,12 @@
 #include <sstream>
 #include <utility>
 
-#include "engine/context.h"
-#include "engine/shader.h"
-#include "tests/engine/analytic_scenes.h"
-#include "tests/passes/hard_shadow_run.h"
+#include "engine/base/resource_root.h"
+#include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+#include "engine/vulkan/shader.h"
+#include "tests/engine/truth/analytic_scenes.h"
+#include "tests/passes/hard/hard_shadow_run.h"
 #include "tests/passes/silent_test.h"
 
 namespace gnomon {

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 
-#include "engine/compile.h"
-#include "engine/graph_shadowless.h"
+#include "engine/graph/graph_shadowless.h"
+#include "engine/light/scene_facts.h"
+#include "engine/plan/compile.h"
 
 namespace gnomon {
 namespace {

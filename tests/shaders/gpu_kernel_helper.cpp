@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "engine/resources.h"
+#include "engine/vulkan/resources.h"
 
 namespace gnomon::test {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/device.h"
-#include "engine/pipeline.h"
+#include "engine/vulkan/device.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace gnomon::test {
 

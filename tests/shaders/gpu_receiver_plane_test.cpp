@@ -43,6 +43,7 @@ struct Answer {
 };
 
 constexpr const char* kPlaneKernel = R"(
+#include "engine/light/light_face.h"
 #include "lib/receiver_plane.glsl"
 layout(local_size_x = 64) in;
 struct Job { vec4 q, n; vec2 offset; float size, bias; uvec4 face_linear; };

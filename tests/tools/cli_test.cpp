@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/error.h"
-#include "engine/image.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
 #include "tools/cli.h"
 #include "tools/output_folder.h"
 

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/image.h"
-#include "tests/passes/gpu_distance_oracle.h"
+#include "engine/image/image.h"
+#include "tests/passes/distance/gpu_distance_oracle.h"
 
 namespace gnomon {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace gnomon {
 namespace {

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "engine/error.h"
-#include "engine/image.h"
+#include "engine/base/error.h"
+#include "engine/image/image.h"
 
 namespace gnomon {
 namespace {

@@ -1,4 +1,6 @@
 #include "tools/scene_generate.h"
+#include "engine/base/resource_root.h"
+#include "engine/light/scene_facts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +10,10 @@
 #include <iterator>
 #include <set>
 
-#include "engine/area_light.h"
-#include "engine/error.h"
-#include "engine/graph.h"
-#include "engine/scene.h"
+#include "engine/base/error.h"
+#include "engine/graph/graph.h"
+#include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 #include "tools/scene_info.h"
 
 namespace gnomon {

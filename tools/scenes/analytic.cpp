@@ -1,7 +1,7 @@
 #include <utility>
 
-#include "engine/area_light.h"
-#include "engine/png.h"
+#include "engine/image/png.h"
+#include "engine/scene/area_light.h"
 #include "tools/scene_generate.h"
 #include "tools/scenes/scenes.h"
 #include "tools/scenes/shapes.h"

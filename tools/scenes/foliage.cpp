@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/png.h"
+#include "engine/image/png.h"
 #include "tools/scenes/scenes.h"
 #include "tools/scenes/shapes.h"
 

@@ -1,0 +1,75 @@
+#include "bench/error/truth.h"
+
+#include <algorithm>
+#include <future>
+#include <nlohmann/json.hpp>
+
+#include "bench/error/error_interval.h"
+#include "bench/error/measure.h"
+#include "engine/base/error.h"
+#include "engine/truth/metrics.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint32_t usual_map_size = 1024;  // texels
+
+uint32_t map_size_of(const Values& vars) {
+  const auto found = vars.find("shadow_map");
+  if (found == vars.end()) return usual_map_size;
+  const auto* texels = std::get_if<std::int64_t>(&found->second);
+  return texels != nullptr && *texels > 0 ? static_cast<uint32_t>(*texels) : usual_map_size;
+}
+
+}  // namespace
+
+Image rgb_of(const Image& color) {
+  Image rgb(color.width, color.height, {"R", "G", "B"});
+  for (size_t c = 0; c < 3; ++c) {
+    const auto from = color.plane(rgb.channels[c]);
+    std::copy(from.begin(), from.end(), rgb.plane(c).begin());
+  }
+  return rgb;
+}
+
+Truth::Truth(std::shared_ptr<const Scene> scene, const ReferenceSettings& settings, const fs::path& cache)
+    : scene_(std::move(scene)),
+      camera_(scene_->cameras.at(settings.camera)),
+      reference_(cached_reference(*scene_, settings, cache)),
+      tracer_(*scene_) {}
+
+const std::vector<std::vector<uint32_t>>& Truth::deep_umbra_of(const EdgeSettings& edges) const {
+  auto [found, is_new] = deep_umbra_.try_emplace(edges.map_size);
+  if (is_new)
+    for (uint32_t i = 0; i < reference_.lights; ++i)
+      found->second.push_back(deep_umbra(reference_, i, edges));
+  return found->second;
+}
+
+std::string Truth::error_json(const Image& visibility, const Image* color, const Values& vars) const {
+  const EdgeSettings edges{&tracer_, camera_, map_size_of(vars)};
+  // FLIP takes about as long as all the rest together, and shares nothing with it.
+  std::future<double> flipped;
+  if (color != nullptr)
+    flipped =
+        std::async(std::launch::async, [color, &truth = shaded()] { return flip(rgb_of(*color), truth); });
+  MeasuredError error = measure_visibility(visibility, reference_, edges, deep_umbra_of(edges));
+  if (color != nullptr) error.all.flip = flipped.get();
+  nlohmann::json object = to_json(error);
+  std::vector<ComparedPlane> planes;
+  for (uint32_t i = 0; i < reference_.lights; ++i)
+    planes.push_back(
+        {visibility.plane(visibility_channel(i)), reference_.visibility[i], reference_.domain[i]});
+  object["ci95"] = error_intervals(planes, reference_.width, reference_.height);
+  if (reference_.noise_floor > 0) object["reference_noise"] = reference_.noise_floor;
+  return object.dump();
+}
+
+const Image& Truth::shaded() const {
+  if (shaded_.width == 0) shaded_ = shade_reference(*scene_, camera_, reference_);
+  return shaded_;
+}
+
+}  // namespace gnomon

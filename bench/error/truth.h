@@ -1,0 +1,45 @@
+// A scene's ray-traced reference at one size, and the error of images against it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "bench/error/measure.h"
+#include "engine/base/params.h"
+#include "engine/image/image.h"
+#include "engine/scene/scene.h"
+#include "engine/truth/reference.h"
+
+namespace gnomon {
+
+// The channels R, G, B of a shaded image; Error when one is missing.
+Image rgb_of(const Image& color);
+
+class Truth {
+ public:
+  // Traces, or reads from `cache`.
+  Truth(std::shared_ptr<const Scene> scene, const ReferenceSettings& settings,
+        const std::filesystem::path& cache);
+
+  // The `error` object of a result row, as JSON text. `color`: the shaded image, for FLIP; may be nullptr.
+  // `vars`: of the graph; `shadow_map` is the map's side in texels that acne and leak are judged by (1024
+  // when there is none).
+  std::string error_json(const Image& visibility, const Image* color, const Values& vars) const;
+  const Reference& reference() const { return reference_; }
+  const Image& shaded() const;  // shade_reference() of it
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  Camera camera_;
+  Reference reference_;
+  ReferenceTracer tracer_;
+  const std::vector<std::vector<uint32_t>>& deep_umbra_of(const EdgeSettings& edges) const;
+  mutable Image shaded_;  // made when first asked for
+  mutable std::map<uint32_t, std::vector<std::vector<uint32_t>>>
+      deep_umbra_;  // by the map's size; a list a light
+};
+
+}  // namespace gnomon

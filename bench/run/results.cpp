@@ -1,0 +1,99 @@
+#include "bench/run/results.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "engine/base/error.h"
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string read_whole(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail("cannot open the results", file.string(), {}, "gnomon bench SUITE --out DIR writes them");
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// Everything up to the end of the last whole line.
+size_t whole_length(const std::string& text) {
+  const size_t last = text.rfind('\n');
+  return last == std::string::npos ? 0 : last + 1;
+}
+
+}  // namespace
+
+std::vector<json> read_results(const fs::path& file) {
+  const std::string text = read_whole(file);
+  std::istringstream lines(text.substr(0, whole_length(text)));
+  std::vector<json> rows;
+  std::map<std::string, size_t> by_key;
+  std::string line;
+  for (size_t number = 1; std::getline(lines, line); ++number) {
+    if (line.empty()) continue;
+    json row = json::parse(line, nullptr, false);
+    if (!row.is_object()) fail("not a JSON object", file.string(), fmt::format("line {}", number));
+    const std::string key =
+        row.contains("key") && row["key"].is_string() ? row["key"].get<std::string>() : "";
+    const auto known = by_key.find(key);
+    if (!key.empty() && known != by_key.end()) {
+      rows[known->second] = std::move(row);
+    } else {
+      by_key[key] = rows.size();
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+ResultsFile::ResultsFile(fs::path file, bool go_on) : file_(std::move(file)) {
+  std::error_code error;
+  fs::create_directories(file_.parent_path(), error);
+  if (error) fail("cannot make the folder: " + error.message(), file_.parent_path().string());
+  const bool there = fs::is_regular_file(file_) && fs::file_size(file_) > 0;
+  if (there && !go_on)
+    fail("there are results already", file_.string(), {},
+         "--resume goes on, --overwrite starts anew, --out takes another folder");
+  if (there) {
+    const std::string text = read_whole(file_);
+    if (whole_length(text) != text.size()) fs::resize_file(file_, whole_length(text));
+  }
+  descriptor_ = open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) fail(std::string("cannot write: ") + std::strerror(errno), file_.string());
+}
+
+ResultsFile::~ResultsFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+void ResultsFile::append(const json& row) {
+  const std::string line = row.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
+  const off_t before = lseek(descriptor_, 0, SEEK_END);
+  size_t written = 0;
+  while (written < line.size()) {
+    const ssize_t count = write(descriptor_, line.data() + written, line.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      const std::string reason = std::strerror(errno);
+      if (ftruncate(descriptor_, before) != 0)
+        fail("cannot write, and the last line is torn: " + reason, file_.string());
+      fail("cannot write: " + reason, file_.string());
+    }
+    written += static_cast<size_t>(count);
+  }
+  fsync(descriptor_);
+}
+
+}  // namespace gnomon

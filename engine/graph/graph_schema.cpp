@@ -1,0 +1,150 @@
+#include <nlohmann/json.hpp>
+
+#include "engine/graph/graph.h"
+
+namespace gnomon {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* name_pattern = "^[A-Za-z0-9_-]+$";
+constexpr const char* port_pattern = "^[A-Za-z0-9_-]+\\.[^.@]+(@previous)?$";
+
+json text(const char* description) { return {{"type", "string"}, {"description", description}}; }
+
+json value_schema(const ParamSpec& spec) {
+  switch (spec.type) {
+    case ParamType::flag:
+      return {{"type", "boolean"}};
+    case ParamType::integer:
+      return {{"type", "integer"}, {"minimum", int64_t(spec.min)}, {"maximum", int64_t(spec.max)}};
+    case ParamType::number:
+      return {{"type", "number"}, {"minimum", spec.min}, {"maximum", spec.max}};
+    case ParamType::choice:
+      return {{"enum", spec.choices}};
+  }
+  return json::object();
+}
+
+json standard_of(const ParamSpec& spec) {
+  return std::visit([](const auto& value) { return json(value); }, spec.standard);
+}
+
+// Every parameter may be a variable instead.
+json param_schema(const ParamSpec& spec) {
+  std::string description = spec.help;
+  if (!spec.unit.empty()) description += (description.empty() ? "unit: " : "; unit: ") + spec.unit;
+  return {{"description", description},
+          {"default", standard_of(spec)},
+          {"anyOf", json::array({value_schema(spec), json{{"$ref", "#/$defs/variable"}}})}};
+}
+
+// Which ports there are may depend on flags and choices: one declaration for each of their values, and the
+// defaults.
+std::vector<Declaration> variants(const Pass& pass) {
+  std::vector<Declaration> result(1);
+  pass.declare(result.front());
+  const std::vector<ParamSpec> specs = result.front().param_specs();
+  const auto add = [&](const std::string& name, Value value) {
+    result.emplace_back(Declaration::Setting{}, Values{{name, std::move(value)}}, Declaration::Inputs{});
+    pass.declare(result.back());
+  };
+  for (const ParamSpec& spec : specs) {
+    if (spec.type == ParamType::flag) add(spec.name, !std::get<bool>(spec.standard));
+    for (const std::string& choice : spec.choices) add(spec.name, choice);
+  }
+  return result;
+}
+
+json inputs_schema(const std::vector<Declaration>& variants) {
+  json ports = json::object();
+  std::map<std::string, size_t> required_in;
+  for (const Declaration& declaration : variants)
+    for (const Port& port : declaration.ports()) {
+      if (port.direction != Direction::in && port.direction != Direction::inout) continue;
+      ports[port.name] = {{"description", port.help}, {"$ref", "#/$defs/port"}};
+      if (!port.optional) ++required_in[port.name];
+    }
+  json required = json::array();
+  for (const auto& [name, count] : required_in)
+    if (count == variants.size()) required.push_back(name);
+  return {{"type", "object"}, {"properties", ports}, {"required", required}, {"additionalProperties", false}};
+}
+
+json params_schema(const std::vector<Declaration>& variants) {
+  json params = json::object();
+  for (const Declaration& declaration : variants)
+    for (const ParamSpec& spec : declaration.param_specs())
+      if (!params.contains(spec.name)) params[spec.name] = param_schema(spec);
+  return {{"type", "object"}, {"properties", params}, {"additionalProperties", false}};
+}
+
+// { "if": the type is this one, "then": these inputs and parameters }
+json type_rule(const std::string& type, const Pass& pass) {
+  const std::vector<Declaration> declarations = variants(pass);
+  json then{{"description", declarations.front().summary()},
+            {"properties", {{"in", inputs_schema(declarations)}, {"params", params_schema(declarations)}}}};
+  if (!then["properties"]["in"]["required"].empty()) then["required"] = {"in"};
+  return {{"if", {{"properties", {{"type", {{"const", type}}}}}}}, {"then", then}};
+}
+
+json loop_rule() {
+  json then{{"description", "repeats its passes until the controller says done"},
+            {"properties",
+             {{"controller", text("id of the pass of the body that decides")},
+              {"max",
+               {{"anyOf", json::array({json{{"type", "integer"}, {"minimum", 1}, {"maximum", 65536}},
+                                       json{{"$ref", "#/$defs/variable"}}})},
+                {"description", "most turns"}}},
+              {"passes", {{"$ref", "#/$defs/passes"}}}}},
+            {"required", {"controller", "max", "passes"}}};
+  return {{"if", {{"properties", {{"type", {{"const", "loop"}}}}}}}, {"then", then}};
+}
+
+json pass_schema() {
+  const PassRegistry& registry = PassRegistry::instance();
+  json types = registry.types();
+  json rules = json::array();
+  for (const std::string& type : registry.types()) rules.push_back(type_rule(type, *registry.make(type)));
+  types.push_back("loop");
+  rules.push_back(loop_rule());
+  return {{"type", "object"},
+          {"required", {"id", "type"}},
+          {"properties",
+           {{"id", {{"type", "string"}, {"pattern", name_pattern}}},
+            {"type", {{"enum", types}}},
+            {"in", {{"type", "object"}}},
+            {"params", {{"type", "object"}}},
+            {"comment", json::object()}}},
+          {"allOf", rules},
+          {"unevaluatedProperties", false}};
+}
+
+}  // namespace
+
+nlohmann::json graph_schema() {
+  const json variable_values{{"type", {"boolean", "number", "string"}}};
+  return {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+      {"title", "Gnomon graph file"},
+      {"type", "object"},
+      {"required", {"schema", "name", "passes", "outputs"}},
+      {"additionalProperties", false},
+      {"properties",
+       {{"$schema", {{"type", "string"}}},
+        {"schema", {{"const", 1}}},
+        {"name", text("name of the technique")},
+        {"cite", text("where the technique is described")},
+        {"comment", json::object()},
+        {"vars", {{"type", "object"}, {"additionalProperties", variable_values}}},
+        {"passes", {{"$ref", "#/$defs/passes"}}},
+        {"outputs",
+         {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", {{"$ref", "#/$defs/port"}}}}}}},
+      {"$defs",
+       {{"variable", {{"type", "string"}, {"pattern", "^\\$."}, {"description", "a variable: \"$name\""}}},
+        {"port", {{"type", "string"}, {"pattern", port_pattern}}},
+        {"passes", {{"type", "array"}, {"minItems", 1}, {"items", {{"$ref", "#/$defs/pass"}}}}},
+        {"pass", pass_schema()}}}};
+}
+
+}  // namespace gnomon

@@ -1,0 +1,345 @@
+#include "engine/plan/compile.h"
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/base/json_text.h"
+#include "engine/graph/graph_shadowless.h"
+#include "engine/light/scene_facts.h"
+#include "engine/plan/compile_parts.h"
+
+namespace gnomon {
+namespace {
+
+class Compiler {
+ public:
+  Compiler(const Graph& graph, const Declaration::Setting& setting, const SceneFacts& facts,
+           const CompileOptions& options)
+      : graph_(graph), facts_(facts), options_(options), file_(graph.file.string()) {
+    Problems problems;
+    resolved_ = resolve_graph(graph, setting, problems);
+    if (problems.empty()) find_roots(problems);
+    problems.raise();
+    keep_own_errors();
+    leave_technique_out(setting);
+  }
+
+  Plan run() {
+    if (!options_.keep_all) folding_ = fold(resolved_, facts_, file_);
+    live_ = live_nodes(resolved_, folding_, roots());
+    add_nodes();
+    name_results();
+    find_loops();
+    find_lifetimes(plan_, loops_);
+    place_in_heap(plan_, options_, file_);
+    cut_segments(plan_, loops_);
+    const std::vector<ResourceUses> uses = collect_uses(plan_, file_);
+    add_barriers(plan_, uses, loops_);
+    add_host_barriers(plan_, uses);
+    tell_left_out();
+    plan_.facts = std::move(facts_);
+    return std::move(plan_);
+  }
+
+ private:
+  // --- scenes without a visible shadow ---
+  // Where a pass darkens lit surfaces, a light without casters is one with shadows.
+  void keep_own_errors() {
+    const bool darkens = std::any_of(resolved_.nodes.begin(), resolved_.nodes.end(),
+                                     [](const ResolvedNode& node) { return node.declaration.darkens(); });
+    if (!darkens) return;
+    for (std::string& why : facts_.shadowless)
+      if (why == SceneFacts::no_caster) why.clear();
+  }
+
+  void leave_technique_out(const Declaration::Setting& setting) {
+    const std::string why = facts_.no_shadow();
+    if (options_.keep_all || why.empty()) return;
+    const std::optional<Graph> without = without_shadows(graph_, setting.lights);
+    if (!without) return;
+    Problems problems;
+    auto shadowless = std::make_unique<Graph>(*without);
+    ResolvedGraph resolved = resolve_graph(*shadowless, setting, problems);
+    const PortKey shown = outputs_.at("visibility");
+    const PortRef& instead = shadowless->outputs.at("visibility");
+    const bool fits =
+        problems.empty() &&
+        image_of(resolved_, shown) == image_of(resolved, {resolved.index.at(instead.node), instead.port});
+    if (!fits) return;  // the graph's visibility is something of its own
+    wanted_ = reachable();
+    resolved_ = std::move(resolved);
+    shadowless_ = std::move(shadowless);
+    why_shadowless_ = why;
+    outputs_.clear();
+    captures_.clear();
+    find_roots(problems);
+    problems.raise();
+  }
+
+  static ImageShape image_of(const ResolvedGraph& graph, const PortKey& key) {
+    return graph.nodes[key.node].declaration.find(key.port)->image;
+  }
+
+  // Ids of the nodes that outputs and captures need when nothing is left out.
+  std::set<std::string> reachable() const {
+    std::set<std::string> ids;
+    for (const uint32_t index : live_nodes(resolved_, Folding{}, roots()))
+      ids.insert(resolved_.nodes[index].node->id);
+    return ids;
+  }
+
+  const Graph& graph() const { return shadowless_ ? *shadowless_ : graph_; }
+
+  // --- outputs and captures ---
+  void find_roots(Problems& problems) {
+    for (const auto& [name, ref] : graph().outputs) outputs_[name] = {resolved_.index.at(ref.node), ref.port};
+    for (const std::string& capture : options_.captures) find_capture(capture, problems);
+  }
+
+  void find_capture(const std::string& capture, Problems& problems) {
+    const std::string place = "capture " + in_quotes(capture);
+    const size_t dot = capture.find('.');
+    const auto node = resolved_.index.find(capture.substr(0, dot));
+    if (dot == std::string::npos || node == resolved_.index.end()) {
+      std::vector<std::string> ids;
+      for (const auto& [id, index] : resolved_.index) ids.push_back(id);
+      problems.add(
+          dot == std::string::npos ? "must name a port" : "unknown pass", file_, place,
+          dot == std::string::npos ? "write \"pass.port\"" : did_you_mean(capture.substr(0, dot), ids));
+      return;
+    }
+    const std::string port = capture.substr(dot + 1);
+    if (const auto key = captured_port(node->second, port, place, problems)) captures_[capture] = *key;
+  }
+
+  // An input's capture is what is connected to it.
+  std::optional<PortKey> captured_port(uint32_t index, const std::string& name, const std::string& place,
+                                       Problems& problems) const {
+    const ResolvedNode& node = resolved_.nodes[index];
+    const Port* port = node.declaration.find(name);
+    PortKey key{index, name};
+    if (!port) {
+      std::vector<std::string> names;
+      for (const Port& p : node.declaration.ports()) names.push_back(p.name);
+      problems.add("unknown port " + in_quotes(name), file_, place, did_you_mean(name, names));
+      return std::nullopt;
+    }
+    if (port->direction == Direction::in) {
+      const auto source = node.in.find(name);
+      if (source == node.in.end()) {
+        problems.add("nothing of this frame is connected to it", file_, place);
+        return std::nullopt;
+      }
+      key = source->second;
+    }
+    const auto users = resolved_.users.find(key);
+    if (users != resolved_.users.end() && !users->second.modifiers.empty()) {
+      const std::string& modifier = resolved_.nodes[users->second.modifiers.front()].node->id;
+      problems.add("is modified in place by '" + modifier + "'", file_, place,
+                   "capture what that one gives out");
+      return std::nullopt;
+    }
+    return key;
+  }
+
+  std::vector<PortKey> roots() const {
+    std::vector<PortKey> keys;
+    for (const auto& [name, key] : outputs_) keys.push_back(key);
+    for (const auto& [name, key] : captures_) keys.push_back(key);
+    return keys;
+  }
+
+  // --- nodes and resources ---
+  void add_nodes() {
+    for (const uint32_t index : resolved_.order)
+      if (live_.contains(index)) own_resources(index);
+    for (const uint32_t index : resolved_.order)
+      if (live_.contains(index)) add_node(index);
+  }
+
+  void own_resources(uint32_t index) {
+    const ResolvedNode& node = resolved_.nodes[index];
+    for (const Port& port : node.declaration.ports()) {
+      if (port.direction != Direction::out && port.direction != Direction::transient) continue;
+      if (port.omittable && !options_.keep_all && !is_read({index, port.name})) continue;
+      Resource resource;
+      resource.name = node.node->id + "." + port.name;
+      resource.is_buffer = port.is_buffer;
+      resource.image = port.image;
+      resource.buffer = port.buffer;
+      resource.kept = port.kept;
+      add_resource({index, port.name}, std::move(resource));
+    }
+  }
+
+  bool is_exported(const PortKey& key) const {
+    const std::vector<PortKey> all = roots();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const PortKey& root) { return root_of(resolved_, folding_, root) == key; });
+  }
+
+  bool is_read(const PortKey& key) const {
+    if (is_exported(key)) return true;
+    for (const uint32_t reader : live_) {
+      const ResolvedNode& node = resolved_.nodes[reader];
+      for (const auto* inputs : {&node.in, &node.previous})
+        for (const auto& [port, source] : *inputs)
+          if (root_of(resolved_, folding_, source) == key) return true;
+    }
+    return false;
+  }
+
+  uint32_t add_resource(const PortKey& key, Resource resource) {
+    const uint32_t number = uint32_t(plan_.resources.size());
+    resource_of_[key] = number;
+    plan_.resources.push_back(std::move(resource));
+    return number;
+  }
+
+  uint32_t constant_resource(const PortKey& source, const std::array<float, 4>& value) {
+    const auto found = resource_of_.find(source);
+    if (found != resource_of_.end() && plan_.resources[found->second].constant) return found->second;
+    const auto known = constants_.find(source);
+    if (known != constants_.end()) return known->second;
+    const ResolvedNode& node = resolved_.nodes[source.node];
+    Resource resource;
+    resource.name = node.node->id + "." + source.port;
+    resource.image = node.declaration.find(source.port)->image;
+    resource.image.extent = {1, 1};  // layers stay, so that a reader's layer index does
+    resource.image.mips = 1;
+    resource.image_usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    resource.constant = value;
+    const uint32_t number = uint32_t(plan_.resources.size());
+    plan_.resources.push_back(std::move(resource));
+    return constants_[source] = number;
+  }
+
+  uint32_t resource_of(const PortKey& key) {
+    const Folding::Instead instead = folding_.resolve(key);
+    if (instead.constant) return constant_resource(instead.source, *instead.constant);
+    return resource_of_.at(root_of(resolved_, folding_, instead.source));
+  }
+
+  void add_node(uint32_t index) {
+    const ResolvedNode& resolved = resolved_.nodes[index];
+    PlanNode node;
+    node.id = resolved.node->id;
+    node.type = resolved.node->type;
+    node.pass = resolved.pass;
+    node.declaration = resolved.declaration;
+    node.params = resolved.declaration.params();
+    for (const Port& port : resolved.declaration.ports()) {
+      connect(index, port, node);
+      if (port.direction == Direction::out && !port.is_buffer)
+        node.reach[port.name] = reach({index, port.name});
+    }
+    position_[index] = uint32_t(plan_.nodes.size());
+    plan_.nodes.push_back(std::move(node));
+  }
+
+  std::optional<uint32_t> reach(const PortKey& key) const {
+    if (options_.keep_all) return std::nullopt;
+    return reach_of(resolved_, folding_, live_, key, is_exported(key));
+  }
+
+  void connect(uint32_t index, const Port& port, PlanNode& node) {
+    const ResolvedNode& resolved = resolved_.nodes[index];
+    std::optional<uint32_t> number;
+    if (port.direction == Direction::out || port.direction == Direction::transient) {
+      const auto own = resource_of_.find({index, port.name});
+      if (own != resource_of_.end()) number = own->second;  // else: an output that nobody reads
+    } else if (const auto history = resolved.previous.find(port.name); history != resolved.previous.end()) {
+      number = resource_of(history->second);
+      node.previous_inputs[port.name] = true;
+      plan_.resources[*number].history = true;
+      plan_.resources[*number].image_usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;  // cleared before frame 0
+      plan_.resources[*number].buffer_usage |= VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    } else if (const auto source = resolved.in.find(port.name); source != resolved.in.end()) {
+      number = resource_of(source->second);
+      if (plan_.resources[*number].constant) node.constant_inputs[port.name] = true;
+    }
+    if (!number) return;  // an optional input
+    node.resources[port.name] = *number;
+    Resource& resource = plan_.resources[*number];
+    (resource.is_buffer ? resource.buffer_usage : resource.image_usage) |=
+        resource.is_buffer ? buffer_usage_of(port.access) : image_usage_of(port.access);
+    resource.host_visible = resource.host_visible || has(port.access, Access::host_read);
+  }
+
+  void name_results() {
+    for (const auto& [name, key] : outputs_) plan_.outputs[name] = exported(key);
+    for (const auto& [name, key] : captures_) plan_.captures[name] = exported(key);
+  }
+
+  uint32_t exported(const PortKey& key) {
+    const uint32_t number = resource_of(key);
+    Resource& resource = plan_.resources[number];
+    resource.exported = true;
+    if (resource.is_buffer) {
+      resource.buffer_usage |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    } else {
+      resource.image_usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    }
+    return number;
+  }
+
+  // --- loops ---
+  void find_loops() {
+    for (const ResolvedLoop& loop : resolved_.loops) {
+      if (!live_.contains(loop.controller)) continue;  // then none of its passes is live
+      LoopRange range{loop.node->id, uint32_t(plan_.nodes.size()), 0, position_.at(loop.controller),
+                      loop.node->max};
+      for (uint32_t i = loop.first; i < loop.last; ++i) {
+        if (!live_.contains(i)) continue;
+        range.first = std::min(range.first, position_.at(i));
+        range.last = std::max(range.last, position_.at(i) + 1);
+      }
+      loops_.push_back(range);
+    }
+    std::sort(loops_.begin(), loops_.end(),
+              [](const LoopRange& a, const LoopRange& b) { return a.first < b.first; });
+  }
+
+  // --- what does not run ---
+  void tell_left_out() {
+    const std::set<std::string> wanted = shadowless_ ? wanted_ : reachable();
+    for (const uint32_t index : resolved_.order) {
+      if (live_.contains(index)) continue;
+      const GraphNode& node = *resolved_.nodes[index].node;
+      plan_.left_out.push_back({node.id, node.type, reason(index, wanted.contains(node.id))});
+    }
+  }
+
+  std::string reason(uint32_t index, bool wanted) const {
+    if (!wanted) return "no output or capture needs it";
+    if (shadowless_) return why_shadowless_;
+    const auto said = folding_.reasons.find(index);
+    if (said != folding_.reasons.end()) return said->second;
+    return "only passes that are left out read it";
+  }
+
+  const Graph& graph_;
+  SceneFacts facts_;
+  const CompileOptions& options_;
+  const std::string file_;
+  ResolvedGraph resolved_;
+  std::unique_ptr<Graph> shadowless_;  // what resolved_ is made of, where the camera sees no shadow
+  std::string why_shadowless_;
+  std::set<std::string> wanted_;  // then: what the graph as written needs
+  Folding folding_;
+  std::set<uint32_t> live_;
+  std::map<std::string, PortKey> outputs_, captures_;
+  std::map<PortKey, uint32_t> resource_of_, constants_;  // of a port that creates memory; of a folded port
+  std::map<uint32_t, uint32_t> position_;                // of a live node
+  std::vector<LoopRange> loops_;
+  Plan plan_;
+};
+
+}  // namespace
+
+Plan compile(const Graph& graph, const Declaration::Setting& setting, const SceneFacts& facts,
+             const CompileOptions& options) {
+  return Compiler(graph, setting, facts, options).run();
+}
+
+}  // namespace gnomon

@@ -1,0 +1,340 @@
+#include "engine/render/context.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/light/scene_facts.h"
+#include "engine/plan/compile_parts.h"
+#include "engine/render/preamble.h"
+#include "engine/vulkan/commands.h"
+
+namespace gnomon {
+namespace {
+
+const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& resources,
+                            const std::string& port) {
+  const auto found = node.resources.find(port);
+  if (found == node.resources.end()) fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
+  return resources[found->second];
+}
+
+constexpr uint32_t kTile = 8;  // side of dispatch_over's workgroups, pixels
+
+VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, bool clear) {
+  VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+  info.imageView = view;
+  info.imageLayout = layout;
+  info.loadOp = clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+  info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  return info;
+}
+
+// The layout that the plan keeps a port's image in while the pass runs.
+VkImageLayout layout_of(const PlanNode& node, const std::string& name, VkFormat format) {
+  const Port* port = node.declaration.find(name);
+  return use_of(port->access, node.declaration.kind(), false, format).layout;
+}
+
+VkImageView target_view(const GpuImage& image, const Targets& targets, std::optional<uint32_t> own = {}) {
+  if (own) return image.view(VK_IMAGE_VIEW_TYPE_2D, *own, 1, 0, 1, image.aspect());
+  if (!targets.layer) return image.attachment_view();
+  const uint32_t first = std::min(*targets.layer, image.shape().layers - 1);
+  const VkImageViewType type = targets.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  return image.view(type, first, targets.layers, 0, 1, image.aspect());
+}
+
+}  // namespace
+
+Environment::Environment(std::shared_ptr<Device> device, const GpuScene& scene, const SceneFacts& scene_facts,
+                         const RenderSettings& settings, const PlanNode& node, const NodeState& state,
+                         const std::vector<Physical>& resources, VkPipelineCache cache)
+    : device_(std::move(device)),
+      scene_(scene),
+      scene_facts_(scene_facts),
+      settings_(settings),
+      node_(node),
+      state_(state),
+      resources_(resources),
+      cache_(cache) {}
+
+ImageShape Environment::shape(const std::string& port) const {
+  return physical_of(node_, resources_, port).image.shape();
+}
+
+bool Environment::connected(const std::string& port) const { return node_.resources.contains(port); }
+
+std::optional<uint32_t> Environment::reach(const std::string& output) const {
+  const auto found = node_.reach.find(output);
+  if (found == node_.reach.end()) fail(fmt::format("pass '{}' has no output '{}'", node_.id, output));
+  return found->second;
+}
+
+Defines Environment::with_parameters(Defines defines) const {
+  for (auto& d : parameter_defines(node_.params)) defines.push_back(std::move(d));
+  defines.emplace_back("KEEP_ALL", settings_.keep_all ? "1" : "0");
+  return defines;
+}
+
+Pipeline Environment::compute(const std::string& file, Defines defines) const {
+  return make_compute_pipeline(
+      device_, state_.pipeline_layout.get(),
+      {file, ShaderStage::compute, state_.preamble, with_parameters(std::move(defines))}, cache_);
+}
+
+Pipeline Environment::raster(RasterState state) const {
+  state.defines = with_parameters(std::move(state.defines));
+  return make_raster_pipeline(device_, state_.pipeline_layout.get(), state, state_.preamble, cache_);
+}
+
+Buffer Environment::buffer(uint64_t bytes, VkBufferUsageFlags usage) const {
+  return Buffer(device_, std::max<uint64_t>(bytes, 16), usage, Place::device);
+}
+
+Buffer Environment::host_buffer(uint64_t bytes, VkBufferUsageFlags usage) const {
+  return Buffer(device_, std::max<uint64_t>(bytes, 16), usage, Place::host);
+}
+
+Buffer Environment::upload(std::span<const std::byte> bytes, VkBufferUsageFlags usage) const {
+  return upload_buffer(device_, bytes, usage);
+}
+
+void Environment::attach(const std::string& port, const Buffer& buffer) const {
+  const uint64_t most = device_->limits().maxStorageBufferRange;
+  if (buffer.size() > most)
+    fail(fmt::format("pass '{}' needs {} bytes for '{}'", node_.id, buffer.size(), port), {}, {},
+         fmt::format("this device's storage buffers have at most {} bytes: use a smaller scene", most));
+  for (const ShaderPort& shown : shader_ports(node_.declaration)) {
+    if (shown.port->name != port) continue;
+    const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
+    for (const VkDescriptorSet set : {state_.set, state_.other_set}) {  // the other: of every second frame
+      if (!set) continue;
+      VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, shown.binding, 0, 1};
+      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+      write.pBufferInfo = &info;
+      vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
+    }
+    return;
+  }
+  fail(fmt::format("pass '{}' has no buffer port '{}' that shaders see", node_.id, port));
+}
+
+void Environment::check_mips(const std::string& port) const {
+  const VkFormat format = shape(port).format;
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(device_->physical(), format, &properties);
+  constexpr VkFormatFeatureFlags kNeeded = VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT |
+                                           VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  if ((properties.optimalTilingFeatures & kNeeded) == kNeeded) return;
+  fail(fmt::format("pass '{}' needs mip levels of '{}', and this device cannot filter {}", node_.id, port,
+                   format_name(format)),
+       {}, {}, "do without mip levels, or use another number format");
+}
+
+Context::Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node,
+                 const NodeState& state, const std::vector<Physical>& resources,
+                 const std::vector<Physical>& previous, uint32_t iteration,
+                 std::function<void(std::string_view)> section)
+    : commands_(commands),
+      scene_(scene),
+      node_(node),
+      state_(state),
+      resources_(resources),
+      previous_(previous),
+      iteration_(iteration),
+      section_(std::move(section)) {}
+
+const Physical& Context::physical(const std::string& port) const {
+  const auto back = node_.previous_inputs.find(port);
+  return physical_of(node_, back != node_.previous_inputs.end() && back->second ? previous_ : resources_,
+                     port);
+}
+ImageShape Context::shape(const std::string& port) const { return physical(port).image.shape(); }
+const Buffer& Context::buffer(const std::string& port) const { return physical(port).buffer; }
+
+void Context::bind(const Pipeline& pipeline) {
+  vkCmdBindPipeline(commands_, pipeline.bind_point, pipeline.handle);
+  const VkDescriptorSet sets[] = {scene_.frame_set(), state_.set};
+  vkCmdBindDescriptorSets(commands_, pipeline.bind_point, pipeline.layout, 0, state_.set ? 2 : 1, sets, 0,
+                          nullptr);
+}
+
+void Context::dispatch(const Pipeline& pipeline, uint32_t x, uint32_t y, uint32_t z) {
+  bind(pipeline);
+  vkCmdDispatch(commands_, x, y, z);
+}
+
+void Context::dispatch_over(const Pipeline& pipeline, Extent pixels, uint32_t layers) {
+  dispatch(pipeline, (pixels.width + kTile - 1) / kTile, (pixels.height + kTile - 1) / kTile, layers);
+}
+
+void Context::dispatch_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset) {
+  bind(pipeline);
+  vkCmdDispatchIndirect(commands_, physical(port).buffer.handle(), offset);
+}
+
+void Context::fill(const std::string& buffer_port, uint32_t value, uint64_t offset, uint64_t size) {
+  vkCmdFillBuffer(commands_, physical(buffer_port).buffer.handle(), offset, size, value);
+}
+
+void Context::clear(const std::string& image_port, uint32_t value) {
+  const GpuImage& image = physical(image_port).image;
+  VkClearColorValue color;
+  std::fill(std::begin(color.uint32), std::end(color.uint32), value);
+  const VkImageSubresourceRange all{image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  vkCmdClearColorImage(commands_, image.handle(), layout_of(node_, image_port, image.shape().format), &color,
+                       1, &all);
+}
+
+void Context::copy(const Buffer& from, const std::string& image_port) {
+  const ImageShape shape = physical(image_port).image.shape();
+  copy_region(from, image_port, {0, 0, shape.extent.height}, shape.layers);
+}
+
+void Context::copy_rows(const Buffer& from, const std::string& image_port, const Rows& rows) {
+  copy_region(from, image_port, rows, 1);
+}
+
+void Context::copy_region(const Buffer& from, const std::string& image_port, const Rows& rows,
+                          uint32_t layers) {
+  const GpuImage& image = physical(image_port).image;
+  VkBufferImageCopy region{};
+  region.imageSubresource = {image.aspect(), 0, rows.layer, layers};
+  region.imageOffset.y = int32_t(rows.first);
+  region.imageExtent = {image.shape().extent.width, rows.count, 1};
+  vkCmdCopyBufferToImage(commands_, from.handle(), image.handle(),
+                         layout_of(node_, image_port, image.shape().format), 1, &region);
+}
+
+void Context::generate_mips(const std::string& port) {
+  gnomon::generate_mips(commands_, physical(port).image);
+}
+
+void Context::own_barrier() { full_barrier(commands_); }
+
+void Context::render(const Targets& targets, const std::function<void()>& body) {
+  std::vector<VkRenderingAttachmentInfo> colors;
+  Extent area;
+  uint32_t layers = 1;
+  const auto note = [&](const GpuImage& image) {
+    area = image.shape().extent;
+    layers = targets.layer ? targets.layers : image.shape().layers;
+  };
+  for (const ColorTarget& target : targets.colors) {
+    const GpuImage& image = physical(target.port).image;
+    note(image);
+    if (target.layer) layers = 1;
+    auto info = attachment(target_view(image, targets, target.layer),
+                           layout_of(node_, target.port, image.shape().format), target.clear.has_value());
+    if (target.clear) std::copy(target.clear->begin(), target.clear->end(), info.clearValue.color.float32);
+    colors.push_back(info);
+  }
+  VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+  bool stencil = false;
+  if (targets.depth) {
+    const GpuImage& image = physical(targets.depth->port).image;
+    note(image);
+    stencil = image.aspect() & VK_IMAGE_ASPECT_STENCIL_BIT;
+    depth =
+        attachment(target_view(image, targets), layout_of(node_, targets.depth->port, image.shape().format),
+                   targets.depth->clear.has_value());
+    const Access access = node_.declaration.find(targets.depth->port)->access;
+    if (!has(access, Access::depth)) depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;  // planned as a read
+    depth.clearValue.depthStencil = {targets.depth->clear.value_or(0.0f), targets.depth->clear_stencil};
+  }
+  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  info.renderArea = {{0, 0}, {area.width, area.height}};
+  info.layerCount = layers;
+  info.colorAttachmentCount = uint32_t(colors.size());
+  info.pColorAttachments = colors.data();
+  info.pDepthAttachment = targets.depth ? &depth : nullptr;
+  info.pStencilAttachment = stencil ? &depth : nullptr;
+  vkCmdBeginRendering(commands_, &info);
+  set_area(area);
+  set_cull(VK_CULL_MODE_NONE);
+  body();
+  vkCmdEndRendering(commands_);
+}
+
+void Context::set_area(Extent extent) {
+  const VkViewport viewport{0, 0, float(extent.width), float(extent.height), 0, 1};
+  const VkRect2D scissor{{0, 0}, {extent.width, extent.height}};
+  vkCmdSetViewport(commands_, 0, 1, &viewport);
+  vkCmdSetScissor(commands_, 0, 1, &scissor);
+}
+
+void Context::set_cull(VkCullModeFlags mode) { vkCmdSetCullMode(commands_, mode); }
+
+void Context::bind_geometry() {
+  const VkBuffer buffers[] = {scene_.positions(), scene_.attributes()};
+  const VkDeviceSize offsets[] = {0, 0};
+  vkCmdBindVertexBuffers(commands_, 0, 2, buffers, offsets);
+  vkCmdBindIndexBuffer(commands_, scene_.indices(), 0, VK_INDEX_TYPE_UINT32);
+}
+
+void Context::draw(const Draw& draw, const LayerRun& layers) {
+  const uint32_t indices[] = {draw.instance, draw.material};
+  vkCmdPushConstants(commands_, state_.pipeline_layout.get(), VK_SHADER_STAGE_ALL, 0, sizeof(indices),
+                     indices);
+  vkCmdDrawIndexed(commands_, draw.index_count, layers.count, draw.first_index, draw.vertex_offset,
+                   layers.first);
+}
+
+void Context::draw_scene(const ScenePipelines& pipelines, Cull cull, uint32_t layers) {
+  const LayerRun all{0, layers};
+  draw_scene(pipelines, cull, [&](const Draw&) { return std::span(&all, 1); });
+}
+
+void Context::draw_scene(const ScenePipelines& pipelines, Cull cull, const InstanceLayers& layers) {
+  draw_scene(pipelines, cull, [&](const Draw& d) { return std::span(layers[d.instance]); });
+}
+
+void Context::draw_scene(const ScenePipelines& pipelines, Cull cull,
+                         const std::function<std::span<const LayerRun>(const Draw&)>& layers_of) {
+  bind_geometry();
+  for (const bool masked : {false, true}) {
+    const Pipeline& pipeline = masked ? pipelines.masked : pipelines.opaque;
+    bool bound = false;
+    VkCullModeFlags current = VK_CULL_MODE_FLAG_BITS_MAX_ENUM;
+    for (const Draw& d : scene_.draws()) {
+      const std::span<const LayerRun> runs = layers_of(d);
+      if (d.alpha_masked != masked || !pipeline.handle || runs.empty()) continue;
+      if (!bound) bind(pipeline), bound = true;
+      const bool one_sided = cull != Cull::none && !d.double_sided;
+      const bool back = (cull == Cull::material) != d.mirrored;  // a mirrored instance turns the winding over
+      const VkCullModeFlags mode = !one_sided ? VK_CULL_MODE_NONE
+                                   : back     ? VK_CULL_MODE_BACK_BIT
+                                              : VK_CULL_MODE_FRONT_BIT;
+      if (mode != current) set_cull(mode), current = mode;
+      const VkDescriptorSet material = scene_.material_set(d.material);
+      vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 2, 1, &material, 0,
+                              nullptr);
+      for (const LayerRun& run : runs) draw(d, run);
+    }
+  }
+}
+
+void Context::reset(const OcclusionQueries& queries) {
+  vkCmdResetQueryPool(commands_, queries.pool(), 0, queries.count());
+}
+
+void Context::query(const OcclusionQueries& queries, uint32_t index, const std::function<void()>& draws) {
+  vkCmdBeginQuery(commands_, queries.pool(), index, 0);
+  draws();
+  vkCmdEndQuery(commands_, queries.pool(), index);
+}
+
+void Context::results(const OcclusionQueries& queries, uint32_t count, const std::string& buffer_port) {
+  constexpr VkDeviceSize kStride = 8;  // bytes: two words
+  vkCmdCopyQueryPoolResults(commands_, queries.pool(), 0, count, physical(buffer_port).buffer.handle(), 0,
+                            kStride, VK_QUERY_RESULT_WAIT_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
+}
+
+void Context::draw_fullscreen(const Pipeline& pipeline) {
+  bind(pipeline);
+  set_cull(VK_CULL_MODE_NONE);
+  vkCmdDraw(commands_, 3, 1, 0, 0);
+}
+
+}  // namespace gnomon

@@ -1,0 +1,121 @@
+#include "engine/render/frame_data.h"
+#include "engine/light/light_face.h"
+
+#include <cmath>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace gnomon {
+namespace {
+
+// Infinite far plane, Vulkan clip space (y down). Reversed: depth = near / z; standard: 1 - near / z.
+glm::dmat4 camera_projection(const Camera& camera, double aspect, bool reversed_z) {
+  const double focal = 1.0 / std::tan(0.5 * camera.fov_y);
+  glm::dmat4 p(0.0);
+  p[0][0] = focal / aspect;
+  p[1][1] = -focal;
+  p[2][3] = -1.0;
+  p[2][2] = reversed_z ? 0.0 : -1.0;
+  p[3][2] = reversed_z ? camera.near : -camera.near;
+  return p;
+}
+
+glm::dmat4 view_rotation(const Camera& camera) {
+  return glm::dmat4(glm::transpose(glm::dmat3(camera.world_from_camera)));
+}
+
+// Rows of a rigid light_from_world, for positions relative to `eye`. Subtracted in double: exact at far
+// origins.
+void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, glm::vec4 (&rows)[3]) {
+  const glm::dmat4 m = light_from_world * glm::translate(glm::dmat4(1.0), eye);
+  for (int r = 0; r < 3; ++r) rows[r] = glm::vec4(m[0][r], m[1][r], m[2][r], m[3][r]);
+}
+
+}  // namespace
+
+FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
+                     bool reversed_z, uint32_t lights, uint32_t faces, uint32_t frame) {
+  const double aspect = camera.aspect.value_or(double(width) / height);
+  const glm::dmat3 world_from_camera(camera.world_from_camera);
+  const glm::dmat4 view = view_rotation(camera);
+  const double half_height = std::tan(0.5 * camera.fov_y), half_width = half_height * aspect;
+  FrameData data{};
+  data.clip_from_relative = glm::mat4(camera_projection(camera, aspect, reversed_z) * view);
+  data.view_from_relative = glm::mat4(view);
+  data.ray_corner = glm::vec4(world_from_camera * glm::dvec3(-half_width, half_height, -1.0), 0.0);
+  data.ray_dx = glm::vec4(world_from_camera[0] * (2.0 * half_width / width), 0.0);
+  data.ray_dy = glm::vec4(world_from_camera[1] * (-2.0 * half_height / height), 0.0);
+  data.viewport = {float(width), float(height), 1.0f / float(width), 1.0f / float(height)};
+  data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, 0.0f, 0.0f};
+  data.counts = {lights, faces, frame, 0};
+  const glm::dvec3 step(camera.world_from_camera[3] - previous.world_from_camera[3]);
+  data.previous_clip_from_relative =
+      glm::mat4(camera_projection(previous, previous.aspect.value_or(double(width) / height), reversed_z) *
+                view_rotation(previous) * glm::translate(glm::dmat4(1.0), step));
+  return data;
+}
+
+std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFace>& faces,
+                                  const glm::dvec3& eye) {
+  std::vector<LightData> result;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    LightData data{};
+    relative_rows(glm::inverse(light.world_from_light), eye, data.rows);
+    const double type = light.type == LightType::spot ? 0 : light.type == LightType::point ? 1 : 2;
+    data.position = glm::vec4(glm::dvec3(light.world_from_light[3]) - eye, type);
+    data.direction =
+        glm::vec4(-glm::normalize(glm::dvec3(light.world_from_light[2])), light.range.value_or(0.0));
+    data.intensity = glm::vec4(light.color * light.intensity, 0.0);
+    data.cone = glm::vec4(std::cos(light.inner_cone), std::cos(light.outer_cone), 0.0, 0.0);
+    for (uint32_t f = 0; f < faces.size(); ++f) {
+      if (faces[f].light != i) continue;
+      if (data.faces.y++ == 0) data.faces.x = f;
+    }
+    result.push_back(data);
+  }
+  return result;
+}
+
+std::vector<FaceData> face_data(const std::vector<LightFace>& faces, const glm::dvec3& eye) {
+  std::vector<FaceData> result;
+  for (const LightFace& face : faces) {
+    FaceData data{};
+    data.clip_from_relative =
+        glm::mat4(face.clip_from_light() * face.light_from_world * glm::translate(glm::dmat4(1.0), eye));
+    relative_rows(face.light_from_world, eye, data.rows);
+    data.range = glm::vec4(face.near, face.far, face.half_width, face.half_height);
+    data.info = {face.light, face.orthographic ? 1u : 0u, 0u, 0u};
+    result.push_back(data);
+  }
+  return result;
+}
+
+std::vector<InstanceData> instance_data(const Scene& scene, const std::vector<uint32_t>& first_triangle,
+                                        const glm::dvec3& eye) {
+  std::vector<InstanceData> result;
+  for (const Instance& instance : scene.instances) {
+    InstanceData data{};
+    data.relative_from_object = glm::mat4(glm::translate(glm::dmat4(1.0), -eye) * instance.world_from_object);
+    const glm::dmat3 linear(instance.world_from_object);
+    // The cofactor matrix turns normals rightly for every scale, and its sign follows a mirrored instance's
+    // winding.
+    const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                              glm::cross(linear[0], linear[1]));
+    for (int c = 0; c < 3; ++c) data.normal_columns[c] = glm::vec4(cofactor[c], 0.0);
+    data.info = {first_triangle[instance.mesh], scene.meshes[instance.mesh].material,
+                 glm::determinant(linear) < 0 ? 1u : 0u, instance.moving ? 1u : 0u};
+    result.push_back(data);
+  }
+  return result;
+}
+
+std::vector<MaterialData> material_data(const Scene& scene) {
+  std::vector<MaterialData> result;
+  for (const Material& m : scene.materials)
+    result.push_back(
+        {m.base_color, {m.alpha_masked ? m.alpha_cutoff : 0.0f, m.double_sided ? 1.0f : 0.0f, 0, 0}});
+  return result;
+}
+
+}  // namespace gnomon

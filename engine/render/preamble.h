@@ -1,0 +1,38 @@
+// GLSL text generated from a pass' declaration: bindings of set 1, parameter block, defines.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/graph/pass.h"
+#include "engine/light/light_face.h"
+#include "engine/scene/scene.h"
+#include "engine/vulkan/shader.h"
+
+namespace gnomon {
+
+// A port that shaders see, in binding order. The parameter block, when there is one, is bound after the last.
+struct ShaderPort {
+  const Port* port = nullptr;
+  uint32_t binding = 0;
+};
+std::vector<ShaderPort> shader_ports(const Declaration& declaration);
+
+// Text: one declaration per port, named as the port. Sampled images `x` get `x_at(ivec2)` (arrays:
+// `x_at(ivec2, int layer)`), which read the single texel of an input that was folded to a constant. Integer
+// and number parameters are `params.name`. LIGHT_COUNT and FACE_COUNT are the scene's.
+std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs);
+
+// NO_DIRECTIONAL_LIGHTS or ALL_DIRECTIONAL_LIGHTS where all lights are of one kind, so that shaders leave out
+// the other; empty otherwise. `faces`: of all lights' maps.
+std::string light_kind_text(const std::vector<LightFace>& faces);
+
+// Flags: NAME 0 or 1. Choices: NAME = index of the chosen, and NAME_CHOICE for each possible one.
+Defines parameter_defines(const Params& params);
+
+// The parameter block's bytes (std140 scalars are 4 bytes each, in declaration order); empty when there is
+// none.
+std::vector<std::byte> parameter_block(const Params& params);
+
+}  // namespace gnomon

@@ -1,0 +1,152 @@
+#include "engine/scene/animation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace gnomon {
+namespace {
+
+// The key frames around a time, and where it lies between them.
+struct Segment {
+  size_t before = 0, after = 0;  // equal: outside the key frames, or on one
+  double share = 0;              // 0 at `before`, 1 at `after`
+  double length = 0;             // seconds
+};
+
+Segment segment_at(const std::vector<double>& times, double seconds) {
+  if (!(seconds > times.front())) return {};
+  if (seconds >= times.back()) return {times.size() - 1, times.size() - 1, 0, 0};
+  const auto next = std::upper_bound(times.begin(), times.end(), seconds);
+  const auto after = static_cast<size_t>(next - times.begin());
+  const double start = times[after - 1], length = times[after] - start;
+  return {after - 1, after, (seconds - start) / length, length};
+}
+
+const glm::dvec4& value_of(const Track& track, size_t key) {
+  return track.values[track.interpolation == Interpolation::cubic_spline ? 3 * key + 1 : key];
+}
+
+// Hermite basis (glTF 2.0, C.5); tangents are per second.
+glm::dvec4 spline(const Track& track, const Segment& s) {
+  const double t = s.share, t2 = t * t, t3 = t2 * t;
+  const glm::dvec4 &from = value_of(track, s.before), &to = value_of(track, s.after);
+  const glm::dvec4 &leaving = track.values[3 * s.before + 2], &arriving = track.values[3 * s.after];
+  return (2 * t3 - 3 * t2 + 1) * from + s.length * (t3 - 2 * t2 + t) * leaving + (3 * t2 - 2 * t3) * to +
+         s.length * (t3 - t2) * arriving;
+}
+
+bool holds(const Track& track, const Segment& s) {
+  return s.before == s.after || track.interpolation == Interpolation::step;
+}
+
+glm::dquat quaternion(const glm::dvec4& v) { return {v.w, v.x, v.y, v.z}; }
+
+// `moving`: scales are kept away from 0.
+NodeTransform transform_at(const AnimatedNode& node, double seconds) {
+  NodeTransform result = node.rest;
+  if (node.translation) result.translation = vector_at(*node.translation, seconds);
+  if (node.rotation) result.rotation = rotation_at(*node.rotation, seconds);
+  if (node.scale) result.scale = vector_at(*node.scale, seconds);
+  if (node.moving)
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(result.scale[i]) < smallest_scale)
+        result.scale[i] = std::copysign(smallest_scale, result.scale[i]);
+  return result;
+}
+
+}  // namespace
+
+glm::dvec3 vector_at(const Track& track, double seconds) {
+  const Segment s = segment_at(track.times, seconds);
+  const glm::dvec4& from = value_of(track, s.before);
+  if (holds(track, s)) return glm::dvec3(from);
+  if (track.interpolation == Interpolation::cubic_spline) return glm::dvec3(spline(track, s));
+  return glm::dvec3(glm::mix(from, value_of(track, s.after), s.share));
+}
+
+glm::dquat rotation_at(const Track& track, double seconds) {
+  const Segment s = segment_at(track.times, seconds);
+  const glm::dquat from = quaternion(value_of(track, s.before));
+  if (holds(track, s)) return from;
+  if (track.interpolation == Interpolation::linear)
+    return glm::normalize(glm::slerp(from, quaternion(value_of(track, s.after)), s.share));
+  const glm::dquat q = quaternion(spline(track, s));
+  const double length = glm::length(q);
+  return length > 1e-12 ? q / length : from;  // tangents may lead through 0
+}
+
+glm::dmat4 NodeTransform::parent_from_node() const {
+  if (matrix) return *matrix;
+  glm::dmat4 result = glm::translate(glm::dmat4(1.0), translation);
+  result *= glm::mat4_cast(rotation);
+  return glm::scale(result, scale);
+}
+
+std::vector<glm::dmat4> node_transforms(const Animation& animation, double seconds) {
+  std::vector<glm::dmat4> world;
+  world.reserve(animation.nodes.size());
+  for (const AnimatedNode& node : animation.nodes) {
+    const glm::dmat4 local = transform_at(node, seconds).parent_from_node();
+    world.push_back(node.parent ? world[*node.parent] * local : local);
+  }
+  return world;
+}
+
+double duration(const Animation& animation) {
+  double last = 0;
+  for (const AnimatedNode& node : animation.nodes)
+    for (const std::optional<Track>* track : {&node.translation, &node.rotation, &node.scale})
+      if (*track) last = std::max(last, (*track)->times.back());
+  return last;
+}
+
+Pose pose_at(const Scene& scene, double seconds) {
+  Pose pose;
+  for (const Instance& instance : scene.instances) pose.instances.push_back(instance.world_from_object);
+  for (const Camera& camera : scene.cameras) pose.cameras.push_back(camera.world_from_camera);
+  for (const Light& light : scene.lights) pose.lights.push_back(light.world_from_light);
+  if (!scene.animation) return pose;
+  const Animation& animation = *scene.animation;
+  const std::vector<glm::dmat4> world = node_transforms(animation, seconds);
+  for (const Attachment& a : animation.instances)
+    pose.instances[a.target] = world[a.node] * a.node_from_target;
+  for (const Attachment& a : animation.cameras)
+    pose.cameras[a.target] = rigid(world[a.node] * a.node_from_target);
+  for (const Attachment& a : animation.lights)
+    pose.lights[a.target] = rigid(world[a.node] * a.node_from_target);
+  return pose;
+}
+
+void apply(const Pose& pose, Scene& scene) {
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    scene.instances[i].world_from_object = pose.instances[i];
+  for (size_t i = 0; i < scene.cameras.size(); ++i) scene.cameras[i].world_from_camera = pose.cameras[i];
+  for (size_t i = 0; i < scene.lights.size(); ++i) scene.lights[i].world_from_light = pose.lights[i];
+}
+
+Scene posed(const Scene& scene, double seconds) {
+  Scene copy = scene;
+  apply(pose_at(scene, seconds), copy);
+  return copy;
+}
+
+glm::dmat4 rigid(const glm::dmat4& transform) {
+  const auto direction = [](const glm::dvec3& v, const glm::dvec3& otherwise) {
+    const double length = glm::length(v);
+    return length > 1e-100 && std::isfinite(length) ? v / length : otherwise;
+  };
+  const glm::dvec3 z = direction(glm::dvec3(transform[2]), {0, 0, 1});
+  const glm::dvec3 spare = std::abs(z.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+  glm::dvec3 y = direction(glm::dvec3(transform[1]), spare);
+  if (glm::length(glm::cross(y, z)) < 1e-9) y = spare;
+  const glm::dvec3 x = glm::normalize(glm::cross(y, z));
+  glm::dmat4 result(1.0);
+  result[0] = glm::dvec4(x, 0.0);
+  result[1] = glm::dvec4(glm::cross(z, x), 0.0);
+  result[2] = glm::dvec4(z, 0.0);
+  result[3] = glm::dvec4(glm::dvec3(transform[3]), 1.0);
+  return result;
+}
+
+}  // namespace gnomon

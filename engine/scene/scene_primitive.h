@@ -1,0 +1,26 @@
+// glTF primitives, materials and textures as the scene's. Internal to the scene loader.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/scene/gltf_file.h"
+#include "engine/scene/scene.h"
+
+namespace gnomon {
+
+// One primitive as a clean mesh; nothing when it holds no triangles (points, lines, all dropped). Counts what
+// it drops.
+std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh, size_t primitive,
+                                   SceneWarnings& warnings);
+
+// An image of the file, or one of its textures (an image and its sampler); nothing, with a warning, when the
+// image cannot be read. `index` must be in range; Error when a reference in the texture is not.
+std::optional<Texture> read_image(const GltfFile& gltf, size_t index, SceneWarnings& warnings);
+std::optional<Texture> read_texture(const GltfFile& gltf, size_t index, SceneWarnings& warnings);
+
+// All materials, then the default one (glTF 2.0, 3.9.6), which primitives without a material use; and the
+// textures that the materials need.
+void read_materials(const GltfFile& gltf, Scene& scene);
+
+}  // namespace gnomon

@@ -1,0 +1,260 @@
+// Cameras and lights of a scene.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/error.h"
+#include "engine/scene/scene_area.h"
+#include "engine/scene/scene_nodes.h"
+
+namespace gnomon {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double widest_map = 169.0 / 180.0 * pi;  // of a spot's square frustum
+
+double radians(double degrees) { return degrees / 180.0 * pi; }
+
+// A finite number above zero in a JSON object, else nothing.
+std::optional<double> positive(const tinygltf::Value& object, const std::string& name) {
+  if (!object.IsObject() || !object.Has(name)) return {};
+  const tinygltf::Value& value = object.Get(name);
+  if (!value.IsNumber()) return {};
+  const double number = value.GetNumberAsDouble();
+  return std::isfinite(number) && number > 0 ? std::optional(number) : std::nullopt;
+}
+
+const tinygltf::Value& member(const tinygltf::Value& object, const std::string& name) {
+  static const tinygltf::Value none;
+  return object.IsObject() && object.Has(name) ? object.Get(name) : none;
+}
+
+class LightReader {
+ public:
+  LightReader(const GltfFile& gltf, Scene& scene) : gltf_(gltf), scene_(scene) {}
+
+  void read(const std::vector<PlacedNode>& nodes, Animation* animation) {
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      const size_t before = scene_.lights.size();
+      read_node(nodes[i]);
+      if (nodes[i].moving && scene_.lights.size() > before)
+        animation->lights.push_back({static_cast<uint32_t>(before), i, glm::dmat4(1.0)});
+    }
+    apply_scene_extras();
+  }
+
+ private:
+  void warn(const std::string& place, const std::string& what) {
+    scene_.warnings.messages.push_back(gltf_.file + ": " + place + ": " + what);
+  }
+
+  void read_node(const PlacedNode& placed) {
+    const tinygltf::Node& node = gltf_.model.nodes[placed.node];
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end()) return;
+    const std::string place = at("/nodes", placed.node);
+    const tinygltf::Value& reference = member(extension->second, "light");
+    const int index = reference.IsInt() ? reference.GetNumberAsInt() : -1;
+    if (index < 0 || static_cast<size_t>(index) >= gltf_.model.lights.size())
+      fail("no light " + std::to_string(index) + "; there are " + std::to_string(gltf_.model.lights.size()),
+           gltf_.file, place + "/extensions/KHR_lights_punctual/light");
+    Light light = punctual(static_cast<size_t>(index));
+    if (light.name.empty()) light.name = node.name.empty() ? "light" + std::to_string(index) : node.name;
+    light.world_from_light = rigid(placed.world_from_node);
+    light.moving = placed.moving;
+    const bool own_fov = set_map_fov(light, node.extras);
+    set_area(light, node.extras, at(place, "extras"));
+    scene_.lights.push_back(std::move(light));
+    own_fov_.push_back(own_fov);
+  }
+
+  Light punctual(size_t index) {
+    const tinygltf::Light& source = gltf_.model.lights[index];
+    const std::string place = at("/extensions/KHR_lights_punctual/lights", index);
+    Light light;
+    light.name = source.name;
+    if (source.type == "spot")
+      light.type = LightType::spot;
+    else if (source.type == "point")
+      light.type = LightType::point;
+    else if (source.type == "directional")
+      light.type = LightType::directional;
+    else
+      fail("unknown light type '" + source.type + "'", gltf_.file, at(place, "type"),
+           "one of: spot, point, directional");
+    for (size_t c = 0; c < 3 && c < source.color.size(); ++c)
+      if (std::isfinite(source.color[c]) && source.color[c] >= 0)
+        light.color[static_cast<int>(c)] = source.color[c];
+    if (std::isfinite(source.intensity) && source.intensity >= 0)
+      light.intensity = source.intensity;
+    else
+      warn(at(place, "intensity"), "not a positive number, 1 is used");
+    if (std::isfinite(source.range) && source.range > 0) light.range = source.range;
+    if (light.type == LightType::spot) set_cones(light, source.spot, at(place, "spot"));
+    return light;
+  }
+
+  void set_cones(Light& light, const tinygltf::SpotLight& spot, const std::string& place) {
+    const double outer = spot.outerConeAngle, inner = spot.innerConeAngle;
+    if (std::isfinite(outer) && outer > 0 && outer <= pi / 2 + 1e-6)
+      light.outer_cone = std::min(outer, pi / 2);
+    else
+      warn(at(place, "outerConeAngle"), "not in (0, pi/2], pi/4 is used");
+    if (std::isfinite(inner) && inner >= 0 && inner < light.outer_cone)
+      light.inner_cone = inner;
+    else
+      warn(at(place, "innerConeAngle"), "not in [0, outerConeAngle), 0 is used");
+    light.map_fov = std::min(2.0 * light.outer_cone, widest_map);
+  }
+
+  // `extras.light.fovy_deg`: the square frustum of the map. True when it was given.
+  static bool set_map_fov(Light& light, const tinygltf::Value& extras) {
+    const auto degrees = positive(member(extras, "light"), "fovy_deg");
+    if (!degrees || light.type != LightType::spot) return false;
+    light.map_fov = std::min(radians(*degrees), widest_map);
+    return true;
+  }
+
+  void set_area(Light& light, const tinygltf::Value& extras, const std::string& place) {
+    if (!extras.IsObject() || !extras.Has("area_light")) return;
+    const std::string area_place = at(place, "area_light");
+    if (light.type == LightType::spot)
+      light.area = read_area(gltf_, extras.Get("area_light"), area_place, scene_);
+    else
+      warn(area_place,
+           "only spot lights are area lights: light '" + light.name + "' shines from its centre alone");
+  }
+
+  // The scene's own extras go to the first spot light, where its node says nothing.
+  void apply_scene_extras() {
+    const tinygltf::Value& extras = scene_extras(gltf_);
+    for (size_t i = 0; i < scene_.lights.size(); ++i) {
+      if (scene_.lights[i].type != LightType::spot) continue;
+      if (!scene_.lights[i].area) set_area(scene_.lights[i], extras, "/scenes/extras");
+      if (!own_fov_[i]) set_map_fov(scene_.lights[i], extras);
+      return;
+    }
+    if (!scene_.lights.empty()) set_area(scene_.lights[0], extras, "/scenes/extras");  // warns
+  }
+
+  const GltfFile& gltf_;
+  Scene& scene_;
+  std::vector<bool> own_fov_;
+};
+
+// Moeller and Trumbore 1997, one-sided in t; the ray's direction is fixed and matches no axis.
+bool crosses(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& a, const glm::dvec3& b,
+             const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a, ac = c - a, p = glm::cross(direction, ac);
+  const double determinant = glm::dot(ab, p);
+  if (determinant == 0.0) return false;
+  const glm::dvec3 s = origin - a, q = glm::cross(s, ab);
+  const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && glm::dot(ac, q) / determinant > 0;
+}
+
+bool encloses(const Mesh& mesh, const glm::dvec3& point) {
+  if (!mesh.watertight || glm::any(glm::lessThan(point, mesh.bounds.min)) ||
+      glm::any(glm::greaterThan(point, mesh.bounds.max)))
+    return false;
+  const glm::dvec3 direction(0.5377, 0.7713, 0.3401);
+  size_t crossings = 0;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    crossings += crosses(point, direction, glm::dvec3(mesh.positions[mesh.indices[i]]),
+                         glm::dvec3(mesh.positions[mesh.indices[i + 1]]),
+                         glm::dvec3(mesh.positions[mesh.indices[i + 2]]));
+  return crossings % 2 == 1;
+}
+
+}  // namespace
+
+void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
+                  Animation* animation) {
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    const PlacedNode& placed = nodes[i];
+    const tinygltf::Node& node = gltf.model.nodes[placed.node];
+    if (node.camera < 0) continue;
+    const std::string node_place = at(at("/nodes", placed.node), "camera");
+    if (static_cast<size_t>(node.camera) >= gltf.model.cameras.size())
+      fail("no camera " + std::to_string(node.camera) + "; there are " +
+               std::to_string(gltf.model.cameras.size()),
+           gltf.file, node_place);
+    const tinygltf::Camera& source = gltf.model.cameras[static_cast<size_t>(node.camera)];
+    const std::string place = gltf.file + ": " + at("/cameras", static_cast<size_t>(node.camera)) + ": ";
+    if (source.type != "perspective") {
+      scene.warnings.messages.push_back(place + "only perspective cameras are read, '" + source.type +
+                                        "' is left out");
+      continue;
+    }
+    Camera camera;
+    camera.name = !node.name.empty() ? node.name : "camera" + std::to_string(scene.cameras.size());
+    camera.world_from_camera = rigid(placed.world_from_node);
+    camera.moving = placed.moving;
+    if (placed.moving)
+      animation->cameras.push_back({static_cast<uint32_t>(scene.cameras.size()), i, glm::dmat4(1.0)});
+    const tinygltf::PerspectiveCamera& view = source.perspective;
+    if (std::isfinite(view.yfov) && view.yfov > 1e-4 && view.yfov < pi - 1e-4)
+      camera.fov_y = view.yfov;
+    else
+      scene.warnings.messages.push_back(place + "yfov is not in (0, pi), 45 degrees are used");
+    if (std::isfinite(view.znear) && view.znear > 0)
+      camera.near = view.znear;
+    else
+      scene.warnings.messages.push_back(place + "znear is not above 0, 0.1 is used");
+    if (std::isfinite(view.aspectRatio) && view.aspectRatio > 0) camera.aspect = view.aspectRatio;
+    scene.cameras.push_back(std::move(camera));
+  }
+}
+
+void read_lights(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
+                 Animation* animation) {
+  LightReader(gltf, scene).read(nodes, animation);
+}
+
+void ensure_camera(Scene& scene) {
+  if (!scene.cameras.empty()) return;
+  const glm::dvec3 centre = scene.bounds.centre();
+  const double radius = scene.bounds.radius();
+  Camera camera;
+  camera.name = "default";
+  const double distance = 1.1 * radius / std::sin(0.5 * camera.fov_y);
+  camera.world_from_camera =
+      looking_at(centre + glm::normalize(glm::dvec3(0.5, 0.6, 1.0)) * distance, centre);
+  camera.near = 1e-3 * distance;
+  scene.cameras.push_back(camera);
+  scene.warnings.messages.push_back(scene.file.string() +
+                                    ": no perspective camera, a default one frames the scene");
+}
+
+void ensure_light(Scene& scene) {
+  if (!scene.lights.empty()) return;
+  const glm::dvec3 centre = scene.bounds.centre();
+  const double radius = scene.bounds.radius(), distance = 4.0 * radius;
+  Light light;
+  light.name = "default";
+  light.world_from_light = looking_at(centre + glm::normalize(glm::dvec3(-0.5, 1.0, 0.4)) * distance, centre);
+  // The square frustum holds the scene's sphere; the cone holds the square.
+  light.map_fov = 2.0 * std::asin(1.02 * radius / distance);
+  light.inner_cone = std::atan(std::sqrt(2.0) * std::tan(0.5 * light.map_fov));
+  light.outer_cone = light.inner_cone + radians(1.0);
+  light.intensity = 0.5 * pi * distance * distance;  // a white surface facing it has radiance 0.5
+  scene.lights.push_back(light);
+  scene.warnings.messages.push_back(scene.file.string() +
+                                    ": no light, a default spot light shines on the scene from above");
+}
+
+void warn_enclosed_lights(Scene& scene) {
+  for (const Light& light : scene.lights) {
+    if (light.type == LightType::directional) continue;
+    const glm::dvec4 position = light.world_from_light[3];
+    for (const Instance& instance : scene.instances) {
+      const glm::dvec3 inside = glm::dvec3(glm::inverse(instance.world_from_object) * position);
+      if (!encloses(scene.meshes[instance.mesh], inside)) continue;
+      scene.warnings.messages.push_back(scene.file.string() + ": light '" + light.name + "' is inside '" +
+                                        instance.name + "', which hides it from everything outside");
+      break;
+    }
+  }
+}
+
+}  // namespace gnomon

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/light/light_face.h"
+#include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+#include "passes/area/area_light_points.h"
+#include "passes/area/sample_maps.h"
+
+namespace gnomon {
+namespace {
+
+constexpr uint32_t kFirst = 1, kLast = 2;  // bits, as in shaders/glsl/area/area_uniform.glsl
+
+bool is_square(int64_t n) {
+  const auto root = int64_t(std::llround(std::sqrt(double(n))));
+  return root * root == n;
+}
+
+class AreaUniform : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.kind(PassKind::mixed);
+    d.summary("Tests every camera pixel against the shadow maps of points spread over each area light.");
+    d.cite("Heckbert and Herf 1997; Macedo 2018, ch. 6.2 (uniform sampling), eq. 6.4");
+    const int64_t n = d.integer("samples", 289, 1, 4096, "1", "points of each area light");
+    const std::string pattern =
+        d.choice("pattern", "grid_corners", {"grid_corners", "grid_centres", "sobol"},
+                 "a regular grid with or without its end points, or Owen-scrambled Sobol points");
+    if (pattern != "sobol" && !is_square(n)) d.refuse("samples", "a square number for a grid");
+    const bool cache =
+        d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
+    const ImageShape visibility = SampleMaps::declare(d, uint32_t(n) * d.setting().map_faces, cache);
+    d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
+             "0 in umbra, 1 lit; a layer a light");
+  }
+
+  void prepare(Environment& e) override {
+    test_.prepare(e, "area/area_uniform.glsl");
+    choose_points(e);
+    uint32_t capacity = 0;
+    for (const LightFace& face : e.gpu_scene().faces()) capacity += uint32_t(points_[face.light].size());
+    maps_.prepare(e, capacity);
+    cached_ = e.params().flag("cache") && capacity <= maps_.layers();
+    if (e.params().flag("cache") && !cached_)
+      e.warn("cache: the memory limit holds " + std::to_string(maps_.layers()) + " of " +
+             std::to_string(capacity) + " maps: none is kept");
+  }
+
+  void record(Context& c) override {
+    const auto& faces = c.scene().faces();
+    maps_.begin(c);
+    samples_ = rendered_ = 0;
+    uint32_t first = 0;
+    for (uint32_t face = 0; face < faces.size(); ++face) {
+      const std::vector<LightPoint>& all = points_[faces[face].light];
+      maps_.write(c, face, first, all);
+      all.empty() ? test(c, face, {}, kFirst | kLast, 0) : sample(c, face, first, all);
+      first += uint32_t(all.size());
+    }
+  }
+
+  std::map<std::string, double> figures() const override {
+    return {{"light_samples", samples_}, {"maps_rendered", rendered_}};
+  }
+
+ private:
+  // Once: a light may move, but keeps its shape.
+  void choose_points(Environment& e) {
+    const SceneFacts& facts = e.scene_facts();
+    const auto n = uint32_t(e.params().integer("samples"));
+    const std::string& pattern = e.params().choice("pattern");
+    points_.resize(facts.lights);
+    for (uint32_t light = 0; light < points_.size(); ++light) {
+      if (!facts.shadowless[light].empty()) continue;
+      points_[light] = facts.shines_as_point(light) ? std::vector<LightPoint>{{glm::dvec2(0.0), 1.0}}
+                                                    : light_points(e.scene(), light, n, pattern);
+    }
+    tell_left_out(e);
+  }
+
+  bool keeps_maps(const Context& c, uint32_t light) const {
+    return cached_ && !c.scene().light_changed(light) && !c.scene().casters_changed();
+  }
+
+  // Batch by batch: as many maps as there are layers, then the pixels' tests against them.
+  void sample(Context& c, uint32_t face, uint32_t first, const std::vector<LightPoint>& all) {
+    const uint32_t light = c.scene().faces()[face].light;
+    float total = 0;  // summed as the shader does, so that a fully lit pixel is 1
+    for (const LightPoint& point : all) total += float(point.weight);
+    const auto n = uint32_t(all.size());
+    const uint32_t batch = cached_ ? SampleMaps::kMostLayers : maps_.layers();
+    for (uint32_t at = 0; at < n; at += batch) {
+      const uint32_t count = std::min(batch, n - at), layer = cached_ ? first + at : 0;
+      if (!keeps_maps(c, light)) render(c, face, first + at, count, layer);
+      const uint32_t part = (at == 0 ? kFirst : 0u) | (at + count == n ? kLast : 0u);
+      test(c, face, {first + at, count, layer}, part, total);
+    }
+    samples_ += n;
+  }
+
+  struct Batch {
+    uint32_t first = 0, count = 0, layer = 0;
+  };
+  // Without samples: nothing shadows the light's receivers.
+  void test(Context& c, uint32_t face, const Batch& batch, uint32_t part, float total) {
+    c.section("test");
+    const AreaPush push{c.scene().faces()[face].light,         face, batch.first, batch.count, batch.layer, 0,
+                        {part, std::bit_cast<uint32_t>(total)}};
+    c.dispatch_over(test_.ready(c, push), c.shape("visibility").extent);
+    c.own_barrier();
+  }
+
+  void render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer) {
+    c.section("maps");
+    maps_.render(c, face, first, count, layer);
+    c.own_barrier();
+    rendered_ += count;
+  }
+
+  SampleMaps maps_;
+  AreaShader test_;
+  std::vector<std::vector<LightPoint>> points_;  // per light; none where nothing casts a shadow in view
+  bool cached_ = false;
+  double samples_ = 0, rendered_ = 0;
+};
+
+GNOMON_PASS("area_uniform", AreaUniform);
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,69 @@
+#include "engine/render/context.h"
+#include "passes/filtered/moment_basis.h"
+#include "passes/map/map_domain.h"
+#include "passes/map/receiver_ports.h"
+
+namespace gnomon {
+namespace {
+
+class MomentTest : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.summary("Visibility of every camera pixel from a pre-filtered shadow map.");
+    d.cite(
+        "Donnelly and Lauritzen 2006, eq. 5; Annen et al. 2007, eq. 6; "
+        "Annen et al. 2008, eq. 4; Lauritzen and McCool "
+        "2008; Gumbau et al. 2011 and 2013; Peters and Klein 2015, "
+        "algorithm 3; Peters et al. 2017");
+    d.darkens_lit_surfaces();  // on slopes and next to anything that the kernel takes in
+    const ImageShape visibility = declare_receiver(d);
+    const ImageShape moments =
+        d.input("moments", Access::sampled, true, "the filtered basis; a face's layers follow each other");
+    d.reads_around("shadow_map", 1);
+    if (moments.mips == 1) d.reads_around("moments", 2);
+    declare_basis(d);
+    declare_kernel(d);
+    d.choice("bound", "chebyshev", {"chebyshev", "gaussian", "gaussian_cdf"},
+             "variance bases: Chebyshev's inequality, twice the upper tail of "
+             "a normal distribution, or its plain tail, "
+             "which leaves lit surfaces half dark");
+    d.choice("solver", "hamburger", {"hamburger", "hausdorff"},
+             "four_moments: depth unbounded, or known to lie in its range");
+    declare_thresholds(d);
+    d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
+  }
+
+  void prepare(Environment& e) override {
+    const ImageShape moments = e.shape("moments");
+    Defines defines = moment_defines(moments, e.shape("shadow_map").layers);
+    if (moments.mips > 1) defines.emplace_back("MIP_MAPS", "1");
+    test_.prepare(e, "filtered/moment_test.glsl", defines);
+    report_bias(e);
+    warn_about_kernel(e, e.shape("shadow_map").extent.width);
+    warn_about_rise(e, e.shape("shadow_map").extent.width);
+  }
+
+  void record(Context& c) override { test_.dispatch_all(c); }
+
+ private:
+  static void declare_thresholds(Declaration& d) {
+    d.number("minimum_variance", 1e-6, 1e-9, 1e-2, "depth range squared",
+             "variance bases: the least that counts");
+    d.number("moment_bias", 1, 0, 1000, "times what rounding asks for",
+             "four_moments: how much of a fixed distribution is mixed in, so "
+             "that rounding leaves valid moments; 1 is "
+             "3e-7 (single) or 6e-5 (half)");
+    d.number("ringing", 0, 0, 16, "1", "fourier: attenuation of the highest term, as a power of e");
+    d.number("bias_kernel", 0, 0, 4, "1",
+             "shift of the receiver towards the light, in parts of what its "
+             "plane rises over half the kernel");
+    d.number("light_leak_reduction", 0, 0, 0.99, "1", "visibility that becomes 0; the rest is stretched");
+  }
+
+  PerLight test_;
+};
+
+GNOMON_PASS("moment_test", MomentTest);
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,43 @@
+#include "engine/render/context.h"
+#include "passes/filtered/moment_basis.h"
+#include "passes/map/receiver_ports.h"
+
+namespace gnomon {
+namespace {
+
+class ShadowMoments : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.summary(
+        "Transforms a shadow map's depth to the basis of a technique "
+        "whose map can be filtered.");
+    d.cite(
+        "Donnelly and Lauritzen 2006; Annen et al. 2007; Annen et al. 2008; "
+        "Lauritzen and McCool 2008; Peters and "
+        "Klein 2015; Peters et al. 2017");
+    const ImageShape map =
+        d.input("shadow_map", Access::sampled, true, "depth from the light, a layer a face");
+    d.reads_around("shadow_map", 0, "moments");
+    declare_encoding(d);
+    const MomentLayout layout = declare_basis(d);
+    d.output("moments", Access::storage_write, true,
+             {map.extent, map.layers * layout.layers, 1, layout.format},
+             "the basis of every texel's depth; a face's layers follow each other");
+  }
+  void prepare(Environment& e) override {
+    transform_ = e.compute("filtered/shadow_moments.glsl",
+                           moment_defines(e.shape("moments"), e.shape("shadow_map").layers));
+  }
+  void record(Context& c) override {
+    const ImageShape map = c.shape("shadow_map");
+    c.dispatch_over(transform_, map.extent, map.layers);
+  }
+
+ private:
+  Pipeline transform_;
+};
+
+GNOMON_PASS("shadow_moments", ShadowMoments);
+
+}  // namespace
+}  // namespace gnomon

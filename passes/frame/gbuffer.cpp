@@ -1,0 +1,84 @@
+#include "engine/graph/pass.h"
+#include "engine/render/context.h"
+
+namespace gnomon {
+namespace {
+
+class GBuffer : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.kind(PassKind::raster);
+    d.summary("Renders the scene from the camera: depth, normals and albedo of the visible surfaces.");
+    d.cite("Saito and Takahashi 1990");
+    const Extent size = d.setting().viewport;
+    d.output("depth", Access::depth, false, {size, 1, 1, VK_FORMAT_D32_SFLOAT},
+             "device depth; reversed z unless asked otherwise, infinite far plane");
+    d.output("normal", Access::color, false, {size, 1, 1, VK_FORMAT_R16G16_SNORM},
+             "octahedral shading normal");
+    d.output("geometric", Access::color, false, {size, 1, 1, VK_FORMAT_R16G16_SNORM},
+             "octahedral normal of the triangle, turned to the camera on double-sided meshes");
+    d.output("albedo", Access::color, false, {size, 1, 1, VK_FORMAT_R8G8B8A8_SRGB}, "base colour");
+    for (const Channel& channel : kChannels) d.omit_unread(channel.port);
+    if (d.flag("unshadowed", false, "also write the visibility of a scene without casters"))
+      d.output("unshadowed", Access::color, true, {size, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT},
+               "0 facing away from the light, else 1; a layer a light");
+  }
+
+  void prepare(Environment& e) override {
+    RasterState state;
+    state.vertex = "frame/scene.vert.glsl";
+    state.fragment = "frame/gbuffer.glsl";
+    state.layout = VertexLayout::full;
+    add_channels(e, state);
+    state.depth = VK_FORMAT_D32_SFLOAT;
+    state.depth_test = state.depth_write = true;
+    state.depth_compare = e.settings().reversed_z ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
+    far_ = e.settings().reversed_z ? 0.0f : 1.0f;
+    pipelines_.opaque = e.raster(state);
+    state.defines.emplace_back("MASKED", "1");
+    pipelines_.masked = e.raster(state);
+  }
+
+  void record(Context& c) override {
+    c.render({channels_, DepthTarget{"depth", far_}, {}}, [&] { c.draw_scene(pipelines_, Cull::material); });
+  }
+
+ private:
+  struct Channel {
+    const char *port, *define;
+    VkFormat format;
+  };
+  static constexpr std::array<Channel, 3> kChannels = {{{"normal", "NORMAL", VK_FORMAT_R16G16_SNORM},
+                                                        {"geometric", "GEOMETRIC", VK_FORMAT_R16G16_SNORM},
+                                                        {"albedo", "ALBEDO", VK_FORMAT_R8G8B8A8_SRGB}}};
+
+  // Those that somebody reads, with their places among the colour attachments.
+  void add_channels(Environment& e, RasterState& state) {
+    constexpr std::array<float, 4> kNothing{};
+    for (const Channel& channel : kChannels) {
+      if (!e.connected(channel.port)) {
+        e.left_out(std::string("channel ") + channel.port, "nobody reads it");
+        continue;
+      }
+      state.defines.emplace_back(channel.define, std::to_string(channels_.size()));
+      state.colors.push_back(channel.format);
+      channels_.push_back({channel.port, kNothing});
+    }
+    if (!e.params().flag("unshadowed")) return;
+    state.defines.emplace_back("UNSHADOWED_LOCATION", std::to_string(channels_.size()));
+    constexpr std::array<float, 4> kLit{1, 1, 1, 1};
+    for (uint32_t light = 0; light < e.shape("unshadowed").layers; ++light) {
+      state.colors.push_back(VK_FORMAT_R32_SFLOAT);
+      channels_.push_back({"unshadowed", kLit, light});
+    }
+  }
+
+  std::vector<ColorTarget> channels_;
+  ScenePipelines pipelines_;
+  float far_ = 0;
+};
+
+GNOMON_PASS("gbuffer", GBuffer);
+
+}  // namespace
+}  // namespace gnomon

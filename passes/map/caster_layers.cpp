@@ -1,0 +1,80 @@
+#include "passes/map/caster_layers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/light/caster_culling.h"
+#include "engine/light/scene_facts.h"
+
+namespace gnomon {
+namespace {
+
+bool holds(const std::vector<std::vector<bool>>& all, const std::vector<std::vector<bool>>& part) {
+  for (size_t face = 0; face < part.size(); ++face)
+    for (size_t i = 0; i < part[face].size(); ++i)
+      if (part[face][i] && !all[face][i]) return false;
+  return true;
+}
+
+std::vector<LayerRun> runs_of(const std::vector<std::vector<bool>>& needed, size_t instance) {
+  std::vector<LayerRun> runs;
+  for (uint32_t face = 0; face < needed.size(); ++face) {
+    if (!needed[face][instance]) continue;
+    if (runs.empty() || runs.back().first + runs.back().count != face) runs.push_back({face, 0});
+    ++runs.back().count;
+  }
+  return runs;
+}
+
+}  // namespace
+
+void CasterLayers::prepare(Environment& e, const std::string& map) {
+  reach_ = e.reach(map);
+  shadowless_ = e.scene_facts().shadowless;
+  all_ = e.settings().keep_all;
+  camera_ = e.settings().camera;
+  size_ = e.shape(map).extent.width;
+  aspect_ = double(e.settings().width) / e.settings().height;
+  drawn_ = needed(e.gpu_scene(), camera_);
+  draw_later(drawn_);
+  if (all_) return;
+  for (size_t light = 0; light < shadowless_.size(); ++light)
+    if (!shadowless_[light].empty())
+      e.left_out(fmt::format("casters of light '{}'", e.scene().lights[light].name), shadowless_[light]);
+  const size_t all = e.scene().instances.size() * drawn_.size();
+  if (draws_ < double(all))
+    e.left_out(fmt::format("{} of {} draws", double(all) - draws_, all),
+               reach_ ? "their shadows cannot reach what the camera sees" : "no face of the map holds them");
+}
+
+CasterLayers::Needed CasterLayers::needed(const GpuScene& scene, uint32_t camera) const {
+  const Scene& now = scene.scene();
+  if (all_) return Needed(scene.faces().size(), std::vector<bool>(now.instances.size(), true));
+  const Camera& view = now.cameras[camera];
+  return casters_in_view(now, view, view.aspect.value_or(aspect_), scene.faces(), size_, reach_, shadowless_);
+}
+
+void CasterLayers::draw_later(const Needed& needed) {
+  layers_.clear();
+  draws_ = 0;
+  const size_t instances = needed.empty() ? 0 : needed.front().size();
+  for (size_t i = 0; i < instances; ++i) {
+    layers_.push_back(runs_of(needed, i));
+    for (const LayerRun& run : layers_.back()) draws_ += run.count;
+  }
+}
+
+bool CasterLayers::update(const Context& c, bool keep) {
+  const GpuScene& scene = c.scene();
+  bool moved = scene.casters_changed();
+  for (uint32_t light = 0; light < shadowless_.size(); ++light) moved = moved || scene.light_changed(light);
+  if (!moved && !scene.camera_changed()) return keep;
+  const Needed now = needed(scene, camera_);
+  if (keep && !moved && holds(drawn_, now)) return true;
+  drawn_ = now;
+  draw_later(drawn_);
+  return false;
+}
+
+}  // namespace gnomon

@@ -1,0 +1,36 @@
+// Which casters a shadow map's faces need: those whose shadow may fall on what the camera sees, kept up to
+// date while the scene moves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/render/context.h"
+
+namespace gnomon {
+
+class CasterLayers {
+ public:
+  // `map`: the output that shows the casters. With keep_all every face has all of them.
+  void prepare(Environment& e, const std::string& map);
+  // For the frame at hand. `keep`: the map still shows what `of_map()` was when it was drawn last; true when
+  // that is all the frame needs, so that nothing has to be drawn.
+  bool update(const Context& c, bool keep);
+  const InstanceLayers& of_map() const { return layers_; }
+  double draws() const { return draws_; }  // of the last frame: instances times faces
+
+ private:
+  using Needed = std::vector<std::vector<bool>>;  // [face][instance]
+  Needed needed(const GpuScene& scene, uint32_t camera) const;
+  void draw_later(const Needed& needed);
+
+  std::optional<uint32_t> reach_;
+  std::vector<std::string> shadowless_;
+  bool all_ = false;
+  uint32_t camera_ = 0, size_ = 1;
+  double aspect_ = 1, draws_ = 0;
+  Needed drawn_;
+  InstanceLayers layers_;
+};
+
+}  // namespace gnomon

@@ -1,0 +1,60 @@
+// What every technique that tests camera pixels against a shadow map has in common: ports and bias
+// parameters, as shaders/glsl/map/shadow_query.glsl uses them.
+#pragma once
+
+#include <array>
+
+#include "engine/graph/pass.h"
+#include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+
+namespace gnomon {
+
+// Parameter of the shadow map and of its readers; both must have the same value.
+void declare_encoding(Declaration& d);
+std::string declare_bias(Declaration& d);
+
+// Inputs `depth`, `geometric`, `shadow_map`; parameters `encoding`, `bias`, `bias_constant`, `bias_slope`,
+// `bias_normal`. Returns the shape of a visibility image: one layer a light.
+ImageShape declare_receiver(Declaration& d);
+
+// Parameter `kernel`: width of a filter in the shadow map, odd, in texels.
+int64_t declare_kernel(Declaration& d);
+
+// One compute shader in two forms: for lights of one face, and (SIX_FACES) for those whose pixels find
+// theirs.
+class LightPipelines {
+ public:
+  void prepare(Environment& e, const std::string& file, const Defines& defines = {});
+  const Pipeline& of(const Context& c, uint32_t light) const;
+
+ private:
+  Pipeline one_face_, six_faces_;  // only those that the scene's lights need
+};
+
+// A compute shader that includes shadow_query.glsl, run for one light at a time.
+class PerLight {
+ public:
+  void prepare(Environment& e, const std::string& file, const Defines& defines = {});
+  // Lights whose shadows the camera cannot see (SceneFacts): writes `visibility` without the shader. Then
+  // true.
+  bool shade_shadowless(Context& c, uint32_t light) const;
+  void dispatch_over(Context& c, uint32_t light, Extent pixels) const;
+  // One invocation per pixel of `visibility`, light by light.
+  void dispatch_all(Context& c) const;
+  // `part`: for passes that do their work in several dispatches.
+  void dispatch_indirect(Context& c, uint32_t light, const std::string& port,
+                         std::array<uint32_t, 2> part = {}) const;
+
+ private:
+  const Pipeline& ready(Context& c, uint32_t light,
+                        std::array<uint32_t, 2> part = {}) const;  // push constants too
+  LightPipelines pipelines_;
+  std::vector<bool> shadowless_;  // per light
+  Pipeline unshadowed_;           // only when some light is
+};
+
+// Puts the biases' size in world units into run.json, at the middle of each map face's depth range.
+void report_bias(Environment& e);
+
+}  // namespace gnomon

@@ -1,0 +1,59 @@
+// What the shaders of passes/area/area_temporal.cpp share. Of a dispatch: `push.first` is the light's sample of this frame, `push.part.x`
+// the light's size in world units (float bits), `push.bit` what has changed since the frame before.
+#include "area/area_query.glsl"
+#include "lib/temporal_shadow.glsl"
+#include "frame/pixel_list.glsl"
+
+// Bits of push.bit. SHADOWS_FADE: so few frames ago that shadows of then may still be there.
+const uint LIGHT_MOVED = 1u, CASTERS_MOVED = 2u, SHADOWS_FADE = 4u;
+
+const int STILL_LAYER = 0, MOVING_LAYER = 1;  // of `maps`: casters that stand still (or all), casters that may move
+
+const float STEEPEST = 0.1;        // change of depth from pixel to pixel, of itself, beyond which no surface is followed
+
+// Relative change of the reciprocal view depth of the plane through `p` with normal `n`, per pixel to the right and down.
+vec2 depth_gradient(vec3 p, vec3 n, float depth) {
+  float distance = dot(n, p);
+  vec2 g = depth * vec2(dot(n, frame.ray_dx.xyz), dot(n, frame.ray_dy.xyz));
+  return clamp(g / (abs(distance) > 1e-6 * depth ? distance : 1e-6 * depth), vec2(-STEEPEST), vec2(STEEPEST));
+}
+
+ivec2 map_texel(vec2 place) { return clamp(ivec2(floor(place)), ivec2(0), textureSize(maps, 0).xy - 1); }
+
+// Depth of the nearest caster in a texel.
+float caster_depth(ivec2 texel) {
+  float depth = maps_at(texel, STILL_LAYER).x;
+#ifdef MOVING_CASTERS
+  depth = min(depth, maps_at(texel, MOVING_LAYER).x);
+#endif
+  return depth;
+}
+
+// Is what is nearest to the light in a moving texel at or in front of the receiver, by the bias to either side? True in a moving
+// caster's shadow and on the moving caster itself.
+bool meets_moving(AreaReceiver receiver, Receiver plane, ivec2 texel) {
+#ifdef MOVING_CASTERS
+  float biased = 1.0 / plane.base;  // perspective faces: area lights are spots
+  Receiver behind = bias_receiver(receiver.face, plane, biased - plane.z);
+  return plane_depth(receiver, behind, vec2(texel) + 0.5) > maps_at(texel, MOVING_LAYER).x;
+#else
+  return false;
+#endif
+}
+
+// A second list as pixel_list.glsl has it: of new pixels, in `fresh` and `fresh_arguments`.
+void list_fresh_pixel(ivec2 pixel, int width) {
+  uint slot = atomicAdd(fresh_arguments[3], 1u);
+  if (slot % LIST_GROUP == 0u) {
+    atomicMax(fresh_arguments[0], list_groups(slot).x);
+    if (list_groups(slot).y > 1u) atomicMax(fresh_arguments[1], list_groups(slot).y);
+  }
+  fresh[slot] = pixel.y * width + pixel.x;
+}
+
+bool fresh_pixel(uint slot, int width, out ivec2 pixel) {
+  bool there = slot < fresh_arguments[3];
+  uint index = there ? fresh[slot] : 0u;
+  pixel = ivec2(index % width, index / width);
+  return there;
+}

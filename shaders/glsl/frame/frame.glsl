@@ -1,0 +1,135 @@
+// Set 0: what every pass sees. Mirrors engine/render/frame_data.h. Positions are "relative": world minus the camera's eye.
+#ifndef GNOMON_FRAME
+#define GNOMON_FRAME
+
+#include "lib/light_face.glsl"
+
+layout(set = 0, binding = 0, std140) uniform Frame {
+  mat4 clip_from_relative;
+  mat4 view_from_relative;
+  vec4 ray_corner;  // relative position at view depth 1 of the image's top left corner
+  vec4 ray_dx, ray_dy;
+  vec4 viewport;    // width, height, 1/width, 1/height
+  vec4 depth;       // near plane, 1 when reversed z
+  uvec4 counts;     // lights, faces, frame index
+  mat4 previous_clip_from_relative;  // the previous frame's camera; positions relative to this frame's eye
+} frame;
+
+struct Light {
+  vec4 rows[3];     // light_from_relative
+  vec4 position;    // relative; w: LIGHT_*
+  vec4 direction;   // unit, the way it shines; w: range, 0 = unlimited
+  vec4 intensity;   // candela or lux, linear RGB
+  vec4 cone;        // cosines of the inner and outer half angle
+  uvec4 faces;      // first, count
+};
+#define LIGHT_SPOT 0.0
+#define LIGHT_POINT 1.0
+#define LIGHT_DIRECTIONAL 2.0
+
+bool is_directional(Light light) { return told_directional(light.position.w == LIGHT_DIRECTIONAL); }
+
+struct Instance {
+  mat4 relative_from_object;
+  vec4 normal_columns[3];
+  uvec4 info;       // first triangle, material, 1 when mirrored, 1 when some animation moves it
+};
+struct Material {
+  vec4 base_color;
+  vec4 alpha;       // cutoff (0: opaque), 1 when double-sided
+};
+
+// Uniform buffers: a uniform index makes a uniform load, which software devices do once for all invocations.
+layout(set = 0, binding = 1, std140) uniform Lights { Light lights[LIGHT_COUNT]; };
+layout(set = 0, binding = 2, std140) uniform Faces { LightFace faces[FACE_COUNT]; };
+layout(set = 0, binding = 3, std430) readonly buffer Instances { Instance instances[]; };
+layout(set = 0, binding = 4, std430) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = 5, std430) readonly buffer TriangleNormals { uint triangle_normals[]; };
+layout(set = 0, binding = 6, std430) readonly buffer Positions { float scene_positions[]; };
+layout(set = 0, binding = 7, std430) readonly buffer Indices { uint scene_indices[]; };
+
+// Depth of the camera's infinite projection. Reversed: d = near / z; standard: d = 1 - near / z.
+bool is_background(float device_depth) { return frame.depth.y != 0.0 ? device_depth <= 0.0 : device_depth >= 1.0; }
+float view_depth(float device_depth) {
+  return frame.depth.x / (frame.depth.y != 0.0 ? device_depth : 1.0 - device_depth);
+}
+// Relative position at view depth 1 of a place in the image, in pixels.
+vec3 view_ray(vec2 place) { return frame.ray_corner.xyz + place.x * frame.ray_dx.xyz + place.y * frame.ray_dy.xyz; }
+// Relative position of a pixel's centre: view ray times linear depth, so nothing cancels at far origins.
+vec3 relative_position(ivec2 pixel, float device_depth) { return view_depth(device_depth) * view_ray(vec2(pixel) + 0.5); }
+// Relative position of what a place in the image shows of the plane through `p` with unit normal `n`; `p` itself where the
+// plane is seen edge-on.
+vec3 plane_position(vec3 p, vec3 n, vec2 place) {
+  vec3 ray = view_ray(place);
+  float along = dot(n, ray), to_plane = dot(n, p);
+  bool in_front = along * to_plane > 1e-6 * length(ray) * abs(to_plane);  // 1e-6: sine of the angle between ray and plane
+  return in_front ? (to_plane / along) * ray : p;
+}
+// The place in the image, in pixels, of a relative position in front of the camera.
+vec2 image_place(vec3 p) {
+  vec4 clip = frame.clip_from_relative * vec4(p, 1.0);
+  return (0.5 + 0.5 * clip.xy / clip.w) * frame.viewport.xy;
+}
+
+// Where the previous frame showed a relative position that stands still: xy its place in that image, in pixels; z its
+// view depth there, not above 0 behind that camera.
+vec3 previous_image_place(vec3 p) {
+  vec4 clip = frame.previous_clip_from_relative * vec4(p, 1.0);
+  return vec3((0.5 + 0.5 * clip.xy / clip.w) * frame.viewport.xy, clip.w);
+}
+
+// Unit vector from `p` to the light, and the distance (infinite for directional lights).
+vec3 to_light(Light light, vec3 p, out float distance) {
+  if (is_directional(light)) {
+    distance = 1.0 / 0.0;
+    return -light.direction.xyz;
+  }
+  vec3 d = light.position.xyz - p;
+  distance = length(d);
+  return d / distance;
+}
+
+// Does a surface with unit geometric normal `n` at `p` face the light? Where not, it is in shadow whatever lies between.
+bool faces_light(Light light, vec3 p, vec3 n) {
+  return dot(n, is_directional(light) ? -light.direction.xyz : light.position.xyz - p) > 0.0;
+}
+
+// Beyond its range a light shines on nothing.
+bool in_range(Light light, vec3 p) {
+  float range = light.direction.w;
+  vec3 d = light.position.xyz - p;
+  return range == 0.0 || is_directional(light) || dot(d, d) <= range * range;
+}
+
+// The light of a layer of an image. A single one's loads are uniform wherever the layer's number comes from.
+int light_of(int layer) { return LIGHT_COUNT == 1 ? 0 : layer; }
+
+// The only face of a light's shadow map, or the first of a point light's.
+LightFace first_face(int light) {
+#if FACE_COUNT == LIGHT_COUNT  // one each
+  return faces[light];
+#else
+  return faces[lights[light].faces.x];
+#endif
+}
+
+// Does the shadow map of a light with that first face hold `p`? Beyond it nobody knows of shadows.
+bool in_map(Light light, LightFace face, vec3 p) {
+#if FACE_COUNT != LIGHT_COUNT
+  if (light.faces.y != 1) return true;  // a point light's faces see everything
+#endif
+  return face_sees(face_project(face, face_space(face, vec4(p, 1.0))));
+}
+bool in_map(int light, vec3 p) { return in_map(lights[light], first_face(light), p); }
+
+// The face of the shadow map that sees `p`: of a point light, the one of its major axis (+x -x +y -y +z -z).
+uint face_of(Light light, vec3 p) {
+  if (light.faces.y == 1) return light.faces.x;
+  vec4 h = vec4(p, 1.0);
+  vec3 q = vec3(dot(light.rows[0], h), dot(light.rows[1], h), dot(light.rows[2], h));
+  vec3 a = abs(q);
+  uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
+  return light.faces.x + 2 * axis + (q[axis] < 0.0 ? 1 : 0);
+}
+
+#endif

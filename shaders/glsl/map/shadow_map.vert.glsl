@@ -1,0 +1,35 @@
+// Vertices of the scene for the faces of a shadow map: one instance a face, which is also the layer.
+#include "frame/frame.glsl"
+
+layout(push_constant) uniform Push { uint instance; } push;
+layout(location = 0) in vec3 in_position;
+invariant gl_Position;  // the same depth with and without what masked materials need
+#ifdef MASKED
+layout(location = 2) in vec2 in_uv;
+layout(location = 3) in vec4 in_color;
+layout(location = 0) out vec2 out_uv;
+layout(location = 3) out float out_alpha;
+layout(location = 2) out flat uint out_instance;
+#endif
+#ifdef LINEAR_DEPTH
+layout(location = 1) out float out_depth;
+#endif
+
+void main() {
+#if FACE_COUNT == 1
+  LightFace face = faces[0];
+#else
+  LightFace face = faces[gl_InstanceIndex];
+#endif
+  vec4 relative = instances[push.instance].relative_from_object * vec4(in_position, 1.0);
+  gl_Position = face.clip_from_relative * vec4(relative.xyz, 1.0);
+  gl_Layer = gl_InstanceIndex;
+#ifdef MASKED
+  out_uv = in_uv;
+  out_alpha = in_color.a;
+  out_instance = push.instance;
+#endif
+#ifdef LINEAR_DEPTH
+  out_depth = encode_linear(face, -face_space(face, vec4(relative.xyz, 1.0)).z);
+#endif
+}
