@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/light/light_face.h"
 #include "tests/shaders/gpu_kernel_helper.h"
 
 namespace gnomon::test {
@@ -43,7 +44,6 @@ struct Answer {
 };
 
 constexpr const char* kPlaneKernel = R"(
-#include "engine/light/light_face.h"
 #include "lib/receiver_plane.glsl"
 layout(local_size_x = 64) in;
 struct Job { vec4 q, n; vec2 offset; float size, bias; uvec4 face_linear; };
