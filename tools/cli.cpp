@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <new>
@@ -12,6 +13,7 @@
 #include "bench/run/run_json.h"
 #include "engine/base/config.h"
 #include "engine/base/error.h"
+#include "engine/base/interrupt.h"
 #include "engine/base/resource_root.h"
 #include "engine/graph/graph.h"
 #include "engine/scene/area_light.h"
@@ -106,6 +108,10 @@ int run_cli(int argc, const char* const* argv) {
     print_error("out of memory (a smaller --size or shadow map needs less)");
   } catch (const std::exception& error) {
     print_error(error.what());
+  } catch (const Interrupted& interrupted) {
+    print_error(fmt::format("ended by {}", interrupted.signal == SIGINT ? "SIGINT" : "SIGTERM"));
+    constexpr int killed = 128;  // as shells report it
+    return killed + interrupted.signal;
   } catch (...) {
     print_error("an unknown error");
   }

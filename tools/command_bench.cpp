@@ -15,6 +15,7 @@
 #include "bench/run/results.h"
 #include "bench/run/stage.h"
 #include "engine/base/error.h"
+#include "engine/base/interrupt.h"
 #include "engine/image/image.h"
 #include "engine/vulkan/shader.h"
 #include "tools/cli.h"
@@ -71,6 +72,17 @@ bool print_comparison(const Options& options, const std::vector<json>& before, c
   return comparison.regressed();
 }
 
+// Ended by a signal: says what is kept.
+BenchResult run_until_interrupted(const Suite& suite, const BenchOptions& bench, const StageMaker& stages) {
+  try {
+    return run_suite(suite, bench, stages);
+  } catch (const Interrupted&) {
+    fmt::print(stderr, "\ngnomon: finished rows are in {}; the same command with --out {} --resume goes on\n",
+               (bench.out / "results.jsonl").string(), bench.out.string());
+    throw;
+  }
+}
+
 int bench_command(const Options& options) {
   const auto [shard, shards] = parse_shard(options.shard);
   std::vector<json> old_rows;
@@ -102,7 +114,7 @@ int bench_command(const Options& options) {
   bench.progress = [&](double now, const std::string& note) { progress.update(share = now, note); };
   const auto tracing = [&](double, const std::string& note) { progress.update(share, note); };
   const BenchResult result =
-      run_suite(suite, bench, device_stages(device, cache_folder(), tracing, bench.out));
+      run_until_interrupted(suite, bench, device_stages(device, cache_folder(), tracing, bench.out));
   progress.done();
 
   const std::vector<json> rows = read_results(result.results);

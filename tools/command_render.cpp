@@ -297,8 +297,9 @@ int render_command(const Options& options) {
   row.keep_all = job.settings.keep_all;
   row.memory_limit = job.settings.memory;
   row.device = device_info(*device);
-  const fs::path out =
-      options.out.empty() ? fs::path("out") / (job.scene->name + "-" + job.graph.name) : options.out;
+  const fs::path out = options.out.empty()
+                           ? fs::path("out") / as_file_name(job.scene->name + "-" + job.graph.name)
+                           : options.out;
   OutputFolder folder(out);
   const Images images = measure(job, options, renderer, folder, row);
   describe_renderer(row, renderer);

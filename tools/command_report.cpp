@@ -46,6 +46,9 @@ int report_command(const Options& options) {
   if (report["images_left_out"] > 0)
     warn(fmt::format("{} images are over --image-budget and left out of the page",
                      report["images_left_out"].dump()));
+  if (report["images_refused"] > 0)
+    warn(fmt::format("{} images that rows name are no image files below their run's folder, and left out",
+                     report["images_refused"].dump()));
   if (!report["failed"].empty())
     warn(fmt::format("{} rows failed; the report lists them", report["failed"].size()));
   return exit_done;

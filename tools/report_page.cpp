@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <optional>
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/input_file.h"
 #include "engine/base/resource_root.h"
-#include "engine/graph/graph.h"
+#include "engine/image/image.h"
 
 namespace gnomon {
 namespace {
@@ -20,14 +20,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* packaged_charts = "/usr/share/javascript/chart.js/chart.min.js";  // libjs-chart.js
-
-std::string read_file(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail("cannot open a file of the report", file.string());
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
   for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
@@ -81,41 +73,73 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
+namespace {
+
+// The bytes of an image file; empty when it holds something else.
+std::string image_bytes(const fs::path& file) {
+  try {
+    read_image(file);
+    return read_input_file(file);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+// Images as data URIs, each once.
+class Embedded {
+ public:
+  explicit Embedded(uint64_t budget) : budget_(budget) {}
+
+  // Its index; nothing when it is no image, or does not fit any more.
+  std::optional<size_t> add(const std::string& path) {
+    if (const auto known = index_.find(path); known != index_.end()) return known->second;
+    std::error_code error;
+    if (used_ + fs::file_size(path, error) > budget_ || error) return ++over_, std::nullopt;
+    const std::string bytes = image_bytes(path);
+    if (bytes.empty()) return std::nullopt;
+    used_ += bytes.size();
+    images_.push_back("data:image/png;base64," + base64(bytes));
+    return index_.emplace(path, images_.size() - 1).first->second;
+  }
+  json take() { return std::move(images_); }
+  uint64_t over() const { return over_; }
+
+ private:
+  const uint64_t budget_;
+  uint64_t used_ = 0, over_ = 0;
+  json images_ = json::array();
+  std::map<std::string, size_t> index_;  // by path
+};
+
+}  // namespace
+
 void embed_images(json& report, uint64_t budget) {
-  std::map<std::string, size_t> index;  // path -> entry of "images"
-  json embedded = json::array();
-  uint64_t used = 0, left_out = 0;
-  for (const char* name : {"reference", "domain", "visibility", "reference_color", "color"}) {
+  Embedded embedded(budget);
+  uint64_t named = 0, shown = 0;
+  for (const json& row : report["rows"]) named += row.value("images_named", uint64_t{0});
+  for (const char* kind : {"reference", "domain", "visibility", "reference_color", "color"}) {
     for (json& row : report["rows"]) {
       json& images = row["images"];
-      if (!images.contains(name) || !images[name].is_string()) continue;
-      const std::string path = images[name];
-      images.erase(name);
-      auto known = index.find(path);
-      if (known == index.end()) {
-        const std::string bytes = read_file(path);
-        if (used + bytes.size() > budget) {
-          ++left_out;
-          continue;
-        }
-        used += bytes.size();
-        known = index.emplace(path, embedded.size()).first;
-        embedded.push_back("data:image/png;base64," + base64(bytes));
-      }
-      images[name] = known->second;
+      if (!images.contains(kind) || !images[kind].is_string()) continue;
+      const auto index = embedded.add(images[kind]);
+      images.erase(kind);
+      if (!index) continue;
+      images[kind] = *index;
+      ++shown;
     }
   }
-  report["images"] = std::move(embedded);
-  report["images_left_out"] = left_out;
+  report["images_left_out"] = embedded.over();
+  report["images_refused"] = named - shown - embedded.over();
+  report["images"] = embedded.take();
 }
 
 std::string report_page(const json& report) {
   const fs::path folder = resource_root() / "tools" / "report";
-  std::string page = read_file(folder / "report.html");
-  fill(page, "/*gnomon:style*/", read_file(folder / "report.css"));
-  fill(page, "/*gnomon:charts*/", in_script(read_file(chart_library())));
+  std::string page = read_input_file(folder / "report.html");
+  fill(page, "/*gnomon:style*/", read_input_file(folder / "report.css"));
+  fill(page, "/*gnomon:charts*/", in_script(read_input_file(chart_library())));
   std::string script;
-  for (const char* file : {"marks.js", "images.js", "report.js"}) script += read_file(folder / file);
+  for (const char* file : {"marks.js", "images.js", "report.js"}) script += read_input_file(folder / file);
   fill(page, "/*gnomon:script*/", in_script(script));
   fill(page, "{\"gnomon\":\"data\"}", json_in_script(report));
   return page;

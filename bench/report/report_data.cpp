@@ -9,6 +9,7 @@
 
 #include "bench/report/pareto.h"
 #include "bench/report/report_fit.h"
+#include "bench/report/report_image_files.h"
 #include "bench/run/run_json.h"
 #include "engine/truth/metrics.h"
 
@@ -73,14 +74,14 @@ json passes_of(const json& row) {
   return passes;
 }
 
+// By kind: where they are. What is no image file of the run is left out.
 json images_of(const ReportRow& source) {
   json images = json::object();
   const json given = field(source.row, "images");
   if (given.is_object())
-    for (const auto& [name, path] : given.items())
-      if (path.is_string())
-        images[name] =
-            std::filesystem::absolute(source.folder / path.get<std::string>()).lexically_normal().string();
+    for (const auto& [kind, name] : given.items())
+      if (const auto file = name.is_string() ? image_below(source.folder, name) : std::nullopt)
+        images[kind] = file->string();
   return images;
 }
 
@@ -111,6 +112,7 @@ json row_of(const ReportRow& source) {
           {"left_out", field(row, "left_out").is_array() ? row["left_out"] : json::array()},
           {"warnings", field(row, "warnings").is_array() ? row["warnings"] : json::array()},
           {"images", images_of(source)},
+          {"images_named", field(source.row, "images").size()},
           {"vars", field(row, "vars")},
           {"set", field(row, "set")},
           {"key", field(row, "key")}};

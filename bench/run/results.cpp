@@ -11,7 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "engine/base/config.h"
 #include "engine/base/error.h"
+#include "engine/base/input_file.h"
 
 namespace gnomon {
 namespace {
@@ -20,11 +22,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 std::string read_whole(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail("cannot open the results", file.string(), {}, "gnomon bench SUITE --out DIR writes them");
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  return read_input_file(file, most_input_bytes, "gnomon bench SUITE --out DIR writes them");
 }
 
 // Everything up to the end of the last whole line.
@@ -43,7 +41,7 @@ std::vector<json> read_results(const fs::path& file) {
   std::string line;
   for (size_t number = 1; std::getline(lines, line); ++number) {
     if (line.empty()) continue;
-    json row = json::parse(line, nullptr, false);
+    json row = parse_json(line, file.string(), number);
     if (!row.is_object()) fail("not a JSON object", file.string(), fmt::format("line {}", number));
     const std::string key =
         row.contains("key") && row["key"].is_string() ? row["key"].get<std::string>() : "";

@@ -12,6 +12,7 @@
 
 #include "engine/base/config.h"
 #include "engine/base/error.h"
+#include "engine/base/input_file.h"
 #include "engine/base/resource_root.h"
 
 namespace gnomon {
@@ -272,16 +273,6 @@ void add_missing(std::vector<T>& all, const std::vector<T>& more) {
     if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
 }
 
-std::string read_whole(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) fail("is a folder, not a suite file", file.string());
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail("cannot open the suite", file.string(), {}, "bench/suites holds some: gnomon bench hard");
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 }  // namespace
 
 Suite parse_suite(const std::string& text, const fs::path& file) {
@@ -355,7 +346,10 @@ std::vector<double> all_light_scales(const Suite& suite) {
   return all;
 }
 
-Suite load_suite(const fs::path& file) { return parse_suite(read_whole(file), file); }
+Suite load_suite(const fs::path& file) {
+  return parse_suite(read_input_file(file, most_input_bytes, "bench/suites holds some: gnomon bench hard"),
+                     file);
+}
 
 fs::path find_suite(const std::string& name_or_file) {
   fs::path given(name_or_file);

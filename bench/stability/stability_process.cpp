@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "engine/base/error.h"
+#include "engine/base/interrupt.h"
 
 namespace gnomon {
 namespace {
@@ -41,17 +42,18 @@ constexpr int status_no_memory = 101, status_exception = 102;  // of the child, 
   } catch (const std::exception& error) {
     write_all(to, error.what());
     status = status_exception;
+  } catch (const Interrupted&) {  // the parent ends, too
+    status = status_exception;
   }
   _exit(status);  // destructors of what the parent owns are the parent's
 }
 
-// Until the end of file or the deadline.
+// Until the end of file, the deadline or an interruption.
 bool read_all(int from, Clock::time_point deadline, std::string& text) {
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     pollfd wait{from, POLLIN, 0};
     const int ready = poll(&wait, 1, left > 0 ? static_cast<int>(left) : 0);
-    if (ready < 0 && errno == EINTR) continue;
     if (ready <= 0) return false;
     char block[4096];
     const ssize_t n = read(from, block, sizeof block);
@@ -97,6 +99,7 @@ ChildOutcome run_in_child(const std::function<std::string()>& work, double most_
   if (!ended) kill(pid, SIGKILL);
   close(ends[0]);
   const int status = wait_for(pid);
+  check_interrupt();
   if (!ended) return {ChildOutcome::Ended::timed_out, fmt::format("no answer in {:g} s", most_seconds)};
   return outcome_of(status, std::move(text));
 }

@@ -12,11 +12,10 @@
 
 namespace gnomon {
 
-// The whole file. Error: it is missing, a folder, or unreadable.
-std::string read_text(const std::filesystem::path& file);
 // Parses a file (comments allowed, duplicate keys are errors with their place). Error: file, line and column.
 nlohmann::json read_json(const std::filesystem::path& file);
-nlohmann::json parse_json(const std::string& text, const std::string& file_for_errors);
+// Nested deeper than 64 levels: Error, since readers recurse. `first_line`: of the text in its file.
+nlohmann::json parse_json(const std::string& text, const std::string& file_for_errors, size_t first_line = 1);
 
 // Reads an object's members by name; finish() reports every member that nobody asked for, with "did you
 // mean".

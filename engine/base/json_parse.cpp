@@ -1,12 +1,10 @@
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "engine/base/config.h"
+#include "engine/base/input_file.h"
 #include "engine/base/json_text.h"
 
 namespace gnomon {
@@ -14,11 +12,11 @@ namespace {
 
 using nlohmann::json;
 
-// "line 3, column 14" of a byte offset, both counted from 1.
-std::string line_and_column(const std::string& text, size_t byte) {
+// "line 3, column 14" of a byte offset; the text begins with line `first_line`, columns count from 1.
+std::string line_and_column(const std::string& text, size_t byte, size_t first_line) {
   byte = std::min(byte, text.size());
   const auto end = text.begin() + std::ptrdiff_t(byte);
-  const auto line = 1 + std::count(text.begin(), end, '\n');
+  const auto line = std::ptrdiff_t(first_line) + std::count(text.begin(), end, '\n');
   const size_t newline = byte == 0 ? std::string::npos : text.rfind('\n', byte - 1);
   const size_t column = newline == std::string::npos ? byte + 1 : byte - newline;
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
@@ -34,7 +32,8 @@ std::string plain(const std::string& message) {
 // depth.
 class Builder : public json::json_sax_t {
  public:
-  Builder(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+  Builder(const std::string& text, const std::string& file, size_t first_line)
+      : text_(text), file_(file), first_line_(first_line) {}
 
   bool null() override { return value(nullptr); }
   bool boolean(bool v) override { return value(v); }
@@ -56,7 +55,8 @@ class Builder : public json::json_sax_t {
   }
   bool parse_error(size_t position, const std::string& last, const json::exception& error) override {
     (void)last;
-    problems_.add(tidy(error.what()), file_, line_and_column(text_, position == 0 ? 0 : position - 1));
+    problems_.add(tidy(error.what()), file_,
+                  line_and_column(text_, position == 0 ? 0 : position - 1, first_line_));
     return false;
   }
 
@@ -120,6 +120,7 @@ class Builder : public json::json_sax_t {
 
   const std::string& text_;
   const std::string& file_;
+  const size_t first_line_;
   json root_;
   std::vector<Level> levels_;
   Problems problems_;
@@ -127,24 +128,14 @@ class Builder : public json::json_sax_t {
 
 }  // namespace
 
-json parse_json(const std::string& text, const std::string& file_for_errors) {
-  Builder builder(text, file_for_errors);
+json parse_json(const std::string& text, const std::string& file_for_errors, size_t first_line) {
+  Builder builder(text, file_for_errors, first_line);
   const bool whole = json::sax_parse(text, &builder, json::input_format_t::json, true, true);
   json result = builder.take();
   if (!whole) fail("not a JSON document", file_for_errors);
   return result;
 }
 
-std::string read_text(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) fail("no such file", file.string());
-  if (std::filesystem::is_directory(file, error)) fail("is a folder, not a file", file.string());
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream || stream.bad()) fail("cannot be read", file.string());
-  return text;
-}
-
-json read_json(const std::filesystem::path& file) { return parse_json(read_text(file), file.string()); }
+json read_json(const std::filesystem::path& file) { return parse_json(read_input_file(file), file.string()); }
 
 }  // namespace gnomon

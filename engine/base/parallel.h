@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/interrupt.h"
+
 namespace gnomon {
 
 // Calls row(i) for i in [0, count), each once, from hardware_concurrency threads, the caller's among them.
@@ -23,6 +25,7 @@ void parallel_rows(uint32_t count, const std::function<void(double)>& progress, 
   const auto work = [&](bool tell) {
     try {
       for (uint32_t i = next++; i < count; i = next++) {
+        check_interrupt();
         row(i);
         if (tell && progress) progress(static_cast<double>(std::min(next.load(), count)) / count);
       }

@@ -5,6 +5,7 @@
 
 #include "engine/base/config.h"
 #include "engine/base/error.h"
+#include "engine/base/input_file.h"
 #include "engine/base/json_text.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/graph_resolve.h"
@@ -219,7 +220,7 @@ Graph parse_graph(const std::string& text, const std::string& file_for_errors, c
 }
 
 Graph load_graph(const std::filesystem::path& file, const Values& set) {
-  return parse_graph(read_text(file), file.string(), set);
+  return parse_graph(read_input_file(file), file.string(), set);
 }
 
 }  // namespace gnomon

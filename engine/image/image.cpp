@@ -10,6 +10,7 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/input_file.h"
 #include "engine/image/png.h"
 
 namespace gnomon {
@@ -118,10 +120,8 @@ void write_bytes(const std::filesystem::path& file, std::string_view bytes) {
 }
 
 void require_readable(const std::filesystem::path& file) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(file, ignored);
-  if (!std::filesystem::exists(status)) fail("no such file", file.string());
-  if (std::filesystem::is_directory(status)) fail("it is a folder, not an image", file.string());
+  constexpr uint64_t most_bytes = uint64_t{8} << 30;  // 16384 x 16384 pixels of 8 channels take that
+  check_input_file(file, most_bytes);
   if (::access(file.c_str(), R_OK) != 0)
     fail(fmt::format("cannot read: {}", system_message(errno)), file.string());
 }
@@ -147,6 +147,7 @@ Image read_exr_unchecked(const std::filesystem::path& file) {
     fail(fmt::format("the EXR file is too large ({} x {}, {} channels)", width, height, names.size()),
          file.string());
   Image image(static_cast<uint32_t>(width), static_cast<uint32_t>(height), std::move(names));
+  if (Imf::hasComments(input.header())) image.comment = Imf::comments(input.header());
   Imf::FrameBuffer frame;
   for (size_t c = 0; c < image.channels.size(); ++c)
     frame.insert(image.channels[c], float_slice(image.plane(c).data(), image.width, window));
@@ -216,6 +217,7 @@ void write_exr(const std::filesystem::path& file, const Image& image) {
   try {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
+    if (!image.comment.empty()) Imf::addComments(header, image.comment);
     Imf::FrameBuffer frame;
     for (size_t c = 0; c < image.channels.size(); ++c) {
       header.channels().insert(image.channels[c], Imf::Channel(Imf::FLOAT));

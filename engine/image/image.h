@@ -14,6 +14,7 @@ struct Image {
   uint32_t width = 0, height = 0;
   std::vector<std::string> channels;  // names as in EXR: "Y", "R", "light1.Y", ...
   std::vector<float> data;
+  std::string comment;  // kept in EXR files
 
   Image() = default;
   Image(uint32_t w, uint32_t h, std::vector<std::string> names);

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "engine/base/error.h"
+#include "engine/base/interrupt.h"
 #include "engine/light/scene_facts.h"
 #include "engine/plan/compile.h"
 #include "engine/render/context.h"
@@ -127,6 +128,7 @@ void Renderer::Impl::prepare() {
 }
 
 FrameTiming Renderer::Impl::render(TimingMode mode) {
+  check_interrupt();
   FrameTiming timing;
   const auto start = Clock::now();
   if (frame > 0) on_device->swap_history();

@@ -175,17 +175,14 @@ void hash_view(KeyHash& hash, const Camera& camera, const ReferenceSettings& set
   for (const uint32_t v : {settings.width, settings.height, settings.samples}) hash.value(v);
 }
 
-// Nothing when the file is missing, broken or of another size.
-std::optional<Reference> read_cached(const std::filesystem::path& file, const Scene& scene,
-                                     const ReferenceSettings& settings) {
+// Nothing when the file is missing, broken or of something else.
+std::optional<Reference> read_cached(const std::filesystem::path& file, const std::string& key) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return std::nullopt;
   try {
-    Reference reference = reference_from_image(read_exr(file), file);
-    if (reference.width == settings.width && reference.height == settings.height &&
-        reference.lights == scene.lights.size())
-      return reference;
-    spdlog::warn("{}: cached reference has another size: traced again", file.string());
+    const Image image = read_exr(file);
+    if (image.comment == key) return reference_from_image(image, file);
+    spdlog::warn("{}: the cached reference is of something else: traced again", file.string());
   } catch (const Error& e) {
     spdlog::warn("{}; traced again", e.what());
   }
@@ -254,13 +251,17 @@ std::string reference_key(const Scene& scene, const ReferenceSettings& settings)
 
 Reference cached_reference(const Scene& scene, const ReferenceSettings& settings,
                            const std::filesystem::path& cache) {
-  const auto file = cache / (reference_key(scene, settings) + ".exr");
-  if (auto cached = read_cached(file, scene, settings)) return std::move(*cached);
+  if (cache.empty()) return ReferenceTracer(scene).trace(settings);
+  const std::string key = reference_key(scene, settings);
+  const auto file = cache / (key + ".exr");
+  if (auto cached = read_cached(file, key)) return std::move(*cached);
   Reference reference = ReferenceTracer(scene).trace(settings);
   try {
     std::error_code code;
     std::filesystem::create_directories(cache, code);
-    write_exr(file, to_image(reference));
+    Image image = to_image(reference);
+    image.comment = key;
+    write_exr(file, image);
   } catch (const Error& e) {  // the result is good even where the cache is not
     spdlog::warn("{}; the reference is not cached", e.what());
   }

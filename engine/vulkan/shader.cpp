@@ -10,12 +10,14 @@
 #include <xxhash.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <mutex>
 #include <set>
 #include <sstream>
 
 #include "engine/base/error.h"
+#include "engine/base/input_file.h"
 #include "engine/base/resource_root.h"
 
 namespace gnomon {
@@ -23,17 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCacheVersion = 2;  // raise when compile options change
+constexpr int kCacheVersion = 3;  // raise when compile options change
 
 fs::path shader_folder() { return resource_root() / "shaders" / "glsl"; }
-
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) fail("no such shader file", file.string());
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 // Path of an #include line, empty when the line is none.
 std::string included_path(const std::string& line) {
@@ -51,7 +45,7 @@ fs::path resolve_include(const std::string& name, const fs::path& from, int line
 
 void expand(const fs::path& file, std::set<fs::path>& seen, std::string& out) {
   if (!seen.insert(fs::weakly_canonical(file)).second) return;
-  std::istringstream in(read_text(file));
+  std::istringstream in(read_input_file(file));
   out += fmt::format("#line 1 \"{}\"\n", file.string());
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
@@ -125,32 +119,47 @@ std::vector<uint32_t> to_spirv(const std::string& text, ShaderStage stage, const
   return words;
 }
 
-// Of the words, put behind them in the cache: drivers may crash on SPIR-V that a full disk cut short.
-uint32_t checksum(const std::vector<uint32_t>& words) { return XXH32(words.data(), words.size() * 4, 0); }
+// What a cache entry ends with: whose it is, and that it is whole. Drivers may crash on SPIR-V that a full
+// disk cut short, and a file may have come under another one's name.
+struct CacheSeal {
+  uint64_t key_low, key_high;
+  uint64_t checksum;
+};
 
-// Empty when there is no such file, or not a whole one.
-std::vector<uint32_t> read_words(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in) return {};
-  std::vector<uint32_t> words(size_t(in.tellg()) / 4);
-  in.seekg(0);
-  in.read(reinterpret_cast<char*>(words.data()), std::streamsize(words.size() * 4));
-  if (!in || words.size() < 6) return {};
-  const uint32_t stored = words.back();
-  words.pop_back();
-  if (stored != checksum(words)) return {};
+CacheSeal seal(const XXH128_hash_t& key, const std::vector<uint32_t>& words) {
+  return {key.low64, key.high64, XXH3_64bits(words.data(), words.size() * sizeof(uint32_t))};
+}
+
+fs::path entry(const fs::path& cache, const XXH128_hash_t& key) {
+  return cache / "spirv" / fmt::format("{:016x}{:016x}.spv", key.high64, key.low64);
+}
+
+// Empty when there is no such file, or not a whole one of this key.
+std::vector<uint32_t> read_words(const fs::path& file, const XXH128_hash_t& key) {
+  constexpr uint64_t most_bytes = uint64_t{64} << 20;  // hundreds of times the longest shader
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return {};
+  const uint64_t size = fs::file_size(file, error);
+  if (error || size <= sizeof(CacheSeal) || size > most_bytes || size % sizeof(uint32_t) != 0) return {};
+  std::vector<uint32_t> words((size - sizeof(CacheSeal)) / sizeof(uint32_t));
+  CacheSeal stored{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(reinterpret_cast<char*>(words.data()), std::streamsize(words.size() * sizeof(uint32_t)));
+  in.read(reinterpret_cast<char*>(&stored), sizeof(stored));
+  const CacheSeal right = seal(key, words);
+  if (!in || std::memcmp(&stored, &right, sizeof(right)) != 0) return {};
   return words;
 }
 
 // The cache only saves time: a folder that cannot be written is no error.
-void write_words(const fs::path& file, const std::vector<uint32_t>& words) {
+void write_words(const fs::path& file, const XXH128_hash_t& key, const std::vector<uint32_t>& words) {
   std::error_code ignored;
   fs::create_directories(file.parent_path(), ignored);
   const fs::path beside = file.string() + fmt::format(".{}", getpid());
   std::ofstream out(beside, std::ios::binary);
-  const uint32_t sum = checksum(words);
-  out.write(reinterpret_cast<const char*>(words.data()), std::streamsize(words.size() * 4));
-  out.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
+  const CacheSeal last = seal(key, words);
+  out.write(reinterpret_cast<const char*>(words.data()), std::streamsize(words.size() * sizeof(uint32_t)));
+  out.write(reinterpret_cast<const char*>(&last), sizeof(last));
   out.close();
   if (out)
     fs::rename(beside, file, ignored);
@@ -171,7 +180,9 @@ fs::path cache_folder() {
   if (const char* own = std::getenv("GNOMON_CACHE"); own && *own) return own;
   if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg) return fs::path(xdg) / "gnomon";
   if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "gnomon";
-  return fs::temp_directory_path() / "gnomon-cache";
+  std::error_code error;
+  const fs::path temporary = fs::temp_directory_path(error);
+  return error ? fs::path() : temporary / "gnomon-cache";
 }
 
 std::vector<uint32_t> compile_shader(const ShaderSource& source) {
@@ -181,11 +192,12 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
                                            GLSLANG_VERSION_MINOR, GLSLANG_VERSION_PATCH, int(source.stage)) +
                                text;
   const XXH128_hash_t hash = XXH3_128bits(key_text.data(), key_text.size());
-  const fs::path cached =
-      cache_folder() / "spirv" / fmt::format("{:016x}{:016x}.spv", hash.high64, hash.low64);
-  if (auto words = read_words(cached); !words.empty()) return words;
+  const fs::path cache = cache_folder();
+  if (cache.empty()) return to_spirv(text, source.stage, file);
+  const fs::path cached = entry(cache, hash);
+  if (auto words = read_words(cached, hash); !words.empty()) return words;
   auto words = to_spirv(text, source.stage, file);
-  write_words(cached, words);
+  write_words(cached, hash, words);
   return words;
 }
 

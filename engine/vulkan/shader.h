@@ -28,7 +28,8 @@ std::string expand_includes(const std::filesystem::path& file);
 // Error: what glslang says, with file and line.
 std::vector<uint32_t> compile_shader(const ShaderSource& source);
 
-// Folder of the caches (GNOMON_CACHE, else $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon).
+// Folder of the caches (GNOMON_CACHE, else $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon, else below the
+// folder for temporary files). Empty: there is no place for one, and nothing is kept.
 std::filesystem::path cache_folder();
 
 }  // namespace gnomon
