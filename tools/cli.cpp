@@ -1,3 +1,4 @@
+// The command line: its commands, and exit statuses for what goes wrong.
 #include "tools/cli.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Distance transforms of masks, apart from any scene.
 #include "tools/edt.h"
 
 #include <fmt/format.h>

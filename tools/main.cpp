@@ -1,3 +1,4 @@
+// The program `gnomon`.
 #include <csignal>
 
 #include "tools/cli.h"

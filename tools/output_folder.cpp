@@ -1,3 +1,4 @@
+// A folder of results that appears whole or not at all.
 #include "tools/output_folder.h"
 
 #include <fmt/format.h>

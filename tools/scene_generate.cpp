@@ -1,3 +1,4 @@
+// Writes the generated scenes as .glb files.
 #include "tools/scene_generate.h"
 
 #include <system_error>

@@ -1,3 +1,4 @@
+// What `gnomon scene info` prints.
 #include "tools/scene_info.h"
 
 #include <fmt/format.h>

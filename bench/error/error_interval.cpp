@@ -1,3 +1,4 @@
+// The interval of an image's error: its tiles are drawn again and again, with replacement.
 #include "bench/error/error_interval.h"
 
 #include <algorithm>

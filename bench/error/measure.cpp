@@ -1,3 +1,4 @@
+// The error of one rendered image against the ray-traced reference, with acne and leak.
 #include "bench/error/measure.h"
 
 #include <fmt/format.h>

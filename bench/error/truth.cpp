@@ -1,3 +1,4 @@
+// A scene's reference at one size: traced or read from the cache, and the errors of images against it.
 #include "bench/error/truth.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Compares the rows of two runs of a suite: what became slower, faster, more or less exact.
 #include "bench/report/compare.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Picks the technique and setting that a budget of time or error asks for.
 #include "bench/report/pick.h"
 
 #include <nlohmann/json.hpp>

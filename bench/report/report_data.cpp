@@ -1,3 +1,4 @@
+// Computes what a report shows from result rows: the content of report.json.
 #include "bench/report/report_data.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Writes the PNGs that a report shows of a measured row.
 #include "bench/report/report_images.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Reads the rows of results.jsonl for reports and comparisons.
 #include "bench/report/report_rows.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Lays out rows of results.jsonl as a table of text.
 #include "bench/report/table.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Keeps the measured frames of an unfinished suite on disk, so that it can be resumed.
 #include "bench/run/checkpoint.h"
 
 #include <cerrno>

@@ -1,3 +1,4 @@
+// Runs a suite: every technique on every scene and size, row by row into results.jsonl.
 #include "bench/run/harness.h"
 
 #include <fmt/format.h>

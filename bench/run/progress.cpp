@@ -1,3 +1,4 @@
+// Shows how far long work is: a bar on a terminal, plain lines elsewhere.
 #include "bench/run/progress.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Appends rows to results.jsonl and reads them back.
 #include "bench/run/results.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// Writes one measurement as JSON: a row of results.jsonl, or run.json.
 #include "bench/run/run_json.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Measures a sequence of frames: each frame's error, and the flicker from frame to frame.
 #include "bench/run/sequence.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The harness' stage on a Vulkan device: renderers and references of one scene and size.
 #include "bench/run/stage.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Reads a suite file and expands its swept variables.
 #include "bench/run/suite.h"
 
 #include <fmt/format.h>

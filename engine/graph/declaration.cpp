@@ -1,3 +1,4 @@
+// Collects what a pass declares: its ports and parameters.
 #include <algorithm>
 #include <cmath>
 #include <utility>

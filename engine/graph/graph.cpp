@@ -1,3 +1,4 @@
+// A graph as JSON text.
 #include "engine/graph/graph.h"
 
 #include <nlohmann/json.hpp>

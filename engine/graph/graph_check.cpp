@@ -1,3 +1,4 @@
+// Checks a whole graph: unknown passes, ports and parameters, shapes, cycles, loops.
 #include <algorithm>
 #include <bit>
 

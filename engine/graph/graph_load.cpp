@@ -1,3 +1,4 @@
+// Reads a graph file and puts in the values of its variables.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>

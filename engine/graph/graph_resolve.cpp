@@ -1,3 +1,4 @@
+// Makes, declares, connects and orders a graph's passes.
 #include "engine/graph/graph_resolve.h"
 
 #include <algorithm>

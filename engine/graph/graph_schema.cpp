@@ -1,3 +1,4 @@
+// Makes the JSON Schema of graph files from what the passes declare.
 #include <nlohmann/json.hpp>
 
 #include "engine/graph/graph.h"

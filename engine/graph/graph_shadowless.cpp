@@ -1,3 +1,4 @@
+// Makes the graph that takes a technique's place where the camera sees no shadow.
 #include "engine/graph/graph_shadowless.h"
 
 #include <algorithm>

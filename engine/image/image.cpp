@@ -1,3 +1,4 @@
+// Images on the CPU and their files: EXR and PNG.
 #include "engine/image/image.h"
 
 #include <fcntl.h>

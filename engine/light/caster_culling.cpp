@@ -1,3 +1,4 @@
+// Finds the casters that can throw a shadow on what the camera sees, by bounds.
 #include "engine/light/caster_culling.h"
 #include "engine/light/light_face.h"
 

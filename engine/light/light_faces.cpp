@@ -1,3 +1,4 @@
+// Fits the projections of a light's faces to the scene.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Finds what of a scene decides which passes it needs.
 #include <algorithm>
 #include <array>
 #include <cmath>

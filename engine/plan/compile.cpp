@@ -1,3 +1,4 @@
+// Compiles a graph to a plan, step by step.
 #include "engine/plan/compile.h"
 
 #include <algorithm>

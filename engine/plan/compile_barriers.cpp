@@ -1,3 +1,4 @@
+// Places the barriers of a plan, those of aliased memory included.
 #include <algorithm>
 
 #include "engine/plan/compile_parts.h"

@@ -1,3 +1,4 @@
+// Finds the passes that an output needs, and leaves out the rest.
 #include "engine/plan/compile_parts.h"
 
 namespace gnomon {

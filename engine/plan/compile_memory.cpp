@@ -1,3 +1,4 @@
+// Places transient resources in one heap, so that those never live together share memory.
 #include <algorithm>
 #include <numeric>
 

@@ -1,3 +1,4 @@
+// Cuts a plan into segments where the host reads a result.
 #include <algorithm>
 
 #include "engine/plan/compile_parts.h"

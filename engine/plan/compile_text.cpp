@@ -1,3 +1,4 @@
+// Writes a plan as text.
 #include <algorithm>
 #include <iterator>
 #include <span>

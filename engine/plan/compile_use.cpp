@@ -1,3 +1,4 @@
+// How a pass uses a resource: stages, access and layout.
 #include "engine/plan/compile.h"
 #include "engine/plan/compile_parts.h"
 

@@ -1,3 +1,4 @@
+// What a pass is given to make its pipelines and to record its commands.
 #include "engine/render/context.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// A plan on a device: resources and memory, and every node's layouts and descriptor sets.
 #include "engine/render/device_plan.h"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// Fills the data that every shader sees: camera, lights and faces.
 #include "engine/render/frame_data.h"
 #include "engine/light/light_face.h"
 

@@ -1,3 +1,4 @@
+// Uploads a scene, and keeps its per-frame data up to date.
 #include "engine/render/gpu_scene.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Generates the GLSL text of a pass' bindings, parameter block and defines.
 #include "engine/render/preamble.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Runs one graph on one scene, frame by frame, and measures it.
 #include "engine/render/renderer.h"
 
 #include <fmt/format.h>

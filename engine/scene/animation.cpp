@@ -1,3 +1,4 @@
+// Interpolates key frames and poses a scene's node tree at a time.
 #include "engine/scene/animation.h"
 
 #include <algorithm>

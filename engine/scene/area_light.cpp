@@ -1,3 +1,4 @@
+// Shapes of area lights: areas, emission, and sample points on them.
 #include "engine/scene/area_light.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Reads the values of glTF accessors, with every byte range checked first.
 #include "engine/scene/gltf_accessor.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reads the animations of a glTF file.
 #include "engine/scene/gltf_animation.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reads a glTF file's container and document, and checks them before anything in it is used.
 #include "engine/scene/gltf_file.h"
 
 #include <algorithm>

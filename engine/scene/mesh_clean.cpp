@@ -1,3 +1,4 @@
+// Repairs triangle meshes: drops bad triangles and unused vertices, mends normals.
 #include "engine/scene/mesh_clean.h"
 
 #include <algorithm>

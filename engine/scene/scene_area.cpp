@@ -1,3 +1,4 @@
+// Reads extras.area_light of a glTF file's nodes.
 #include "engine/scene/scene_area.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Loads a glTF file as a scene.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,3 +1,4 @@
+// Reads a glTF file's materials and textures.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,3 +1,4 @@
+// Walks a glTF file's node tree: transforms, and what is not supported.
 #include "engine/scene/scene_nodes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reads the triangles of glTF primitives.
 #include "engine/scene/scene_primitive.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// What a triangle of a scene looks like at a point: base colour, alpha and normal, on the CPU.
 #include "engine/scene/surface.h"
 
 #include <algorithm>

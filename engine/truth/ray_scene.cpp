@@ -1,3 +1,4 @@
+// A scene in Embree: first hits, and whether a segment is blocked.
 #include "engine/truth/ray_scene.h"
 
 #if __has_include(<embree4/rtcore.h>)

@@ -1,3 +1,4 @@
+// Traces a scene's visibility and shading, pixel by pixel.
 #include "engine/truth/reference.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Samples an area light as a point of the scene sees it.
 #include "engine/truth/reference_light.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Opens a Vulkan device: picks one, checks its features, makes its queue.
 #include "engine/vulkan/device.h"
 
 #include <fmt/format.h>

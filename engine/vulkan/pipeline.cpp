@@ -1,3 +1,4 @@
+// Makes compute and graphics pipelines.
 #include "engine/vulkan/pipeline.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Copies device images to the CPU.
 #include "engine/vulkan/readback.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Buffers, images and their memory.
 #include "engine/vulkan/resources.h"
 
 #include <fmt/format.h>

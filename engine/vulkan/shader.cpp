@@ -1,3 +1,4 @@
+// From a GLSL file to SPIR-V: includes, compilation, the disk cache.
 #include "engine/vulkan/shader.h"
 
 #include <fmt/format.h>

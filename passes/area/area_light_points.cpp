@@ -1,3 +1,4 @@
+// Point samples of the scene's area lights.
 #include "passes/area/area_light_points.h"
 
 #include "engine/scene/area_light.h"

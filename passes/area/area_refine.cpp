@@ -1,3 +1,4 @@
+// The pass area_refine: samples of each area light, refined level by level of a quad-tree.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The pass area_resolve: weighs the refined samples where the camera sees penumbra.
 #include "engine/render/context.h"
 #include "passes/area/area_words.h"
 #include "passes/frame/pixel_list.h"

@@ -1,3 +1,4 @@
+// The pass area_temporal: one point of each area light a frame, accumulated over frames.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,3 +1,4 @@
+// The pass area_uniform: the average over points spread evenly on each area light.
 #include <algorithm>
 #include <bit>
 #include <cmath>

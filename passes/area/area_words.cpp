@@ -1,3 +1,4 @@
+// Buffers and images in which adaptive sampling keeps its samples.
 #include "passes/area/area_words.h"
 
 #include <algorithm>

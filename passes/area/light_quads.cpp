@@ -1,3 +1,4 @@
+// The quad-tree that adaptive sampling refines an area light by.
 #include "passes/area/light_quads.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Assigns layers to the shadow maps of samples, from frame to frame.
 #include "passes/area/map_cache.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Renders the shadow maps of an area light's samples, layer by layer.
 #include "passes/area/sample_maps.h"
 
 #include <algorithm>

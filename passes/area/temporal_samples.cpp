@@ -1,3 +1,4 @@
+// The point samples of an area light that one frame after the other renders.
 #include "passes/area/temporal_samples.h"
 
 #include "engine/scene/area_light.h"

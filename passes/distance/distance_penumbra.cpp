@@ -1,3 +1,4 @@
+// The pass distance_penumbra: turns the distance to the hard shadow's silhouette into penumbra.
 #include <limits>
 
 #include "engine/render/context.h"

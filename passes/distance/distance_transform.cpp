@@ -1,3 +1,4 @@
+// The pass distance_transform: for every pixel the nearest site, by one of several algorithms.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Parameters and ports of the pass distance_transform, and the units in which it works.
 #include "passes/distance/distance_transform_ports.h"
 
 #include <algorithm>

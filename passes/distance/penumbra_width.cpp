@@ -1,3 +1,4 @@
+// The width of a penumbra, as passes declare and read it.
 #include "passes/distance/penumbra_width.h"
 
 namespace gnomon {

@@ -1,3 +1,4 @@
+// What a pre-filtered shadow map holds: the basis that depth is transformed to.
 #include "passes/filtered/moment_basis.h"
 
 #include <fmt/format.h>

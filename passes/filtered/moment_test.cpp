@@ -1,3 +1,4 @@
+// The pass moment_test: visibility from a pre-filtered shadow map.
 #include "engine/render/context.h"
 #include "passes/filtered/moment_basis.h"
 #include "passes/map/map_domain.h"

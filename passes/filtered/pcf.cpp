@@ -1,3 +1,4 @@
+// The pass pcf: percentage-closer filtering.
 #include "engine/render/context.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/min_max_map.h"

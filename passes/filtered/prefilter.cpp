@@ -1,3 +1,4 @@
+// The pass prefilter: filters a map's texels by rows, then by columns.
 #include <algorithm>
 #include <bit>
 

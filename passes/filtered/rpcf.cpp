@@ -1,3 +1,4 @@
+// The pass rpcf: percentage-closer filtering of the revectorized shadow.
 #include <algorithm>
 
 #include "engine/base/divide_up.h"

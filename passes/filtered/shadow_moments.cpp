@@ -1,3 +1,4 @@
+// The pass shadow_moments: transforms a shadow map's depth to a technique's basis.
 #include "engine/render/context.h"
 #include "passes/filtered/moment_basis.h"
 #include "passes/map/receiver_ports.h"

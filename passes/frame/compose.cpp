@@ -1,3 +1,4 @@
+// The pass compose: shades the G-buffer with all lights and their visibility.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
 

@@ -1,3 +1,4 @@
+// The pass gbuffer: depth, normals and albedo of what the camera sees.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
 

@@ -1,3 +1,4 @@
+// The pass image_source: an image that the program gives, as if a pass had made it.
 #include <fmt/format.h>
 
 #include "engine/base/error.h"

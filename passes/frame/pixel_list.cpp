@@ -1,3 +1,4 @@
+// Lists of pixels that one dispatch makes and another works off.
 #include "passes/frame/pixel_list.h"
 
 namespace gnomon {

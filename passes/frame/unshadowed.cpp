@@ -1,3 +1,4 @@
+// The pass unshadowed: visibility where nothing casts a shadow.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
 

@@ -1,3 +1,4 @@
+// The pass revectorize: revectorization-based shadow mapping.
 #include "engine/base/divide_up.h"
 #include "engine/render/context.h"
 #include "passes/frame/pixel_list.h"

@@ -1,3 +1,4 @@
+// The pass shadow_test: the shadow-map test of every camera pixel.
 #include "engine/render/context.h"
 #include "passes/map/receiver_ports.h"
 

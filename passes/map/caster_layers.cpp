@@ -1,3 +1,4 @@
+// Which casters are drawn into which faces of a shadow map.
 #include "passes/map/caster_layers.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Warns of what of a scene lies outside of what shadow maps can resolve.
 #include "passes/map/map_domain.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Makes a min-max map of a shadow map over a filter window.
 #include "passes/map/min_max_map.h"
 
 #include "engine/base/divide_up.h"

@@ -1,3 +1,4 @@
+// Ports and bias parameters of everything that tests camera pixels against a shadow map.
 #include "passes/map/receiver_ports.h"
 #include "engine/light/light_face.h"
 #include "engine/light/scene_facts.h"

@@ -1,3 +1,4 @@
+// The pass shadow_map: the scene's depth from every light.
 #include <string>
 
 #include "engine/light/scene_facts.h"

@@ -1,3 +1,4 @@
+// The pass bilateral_filter: visibility averaged by distance from the pixel and its tangent plane.
 #include "passes/screen/strip_filter.h"
 
 namespace gnomon {

@@ -1,3 +1,4 @@
+// The pass mean_filter: visibility averaged over each pixel's surroundings on its own surface.
 #include "passes/screen/strip_filter.h"
 
 namespace gnomon {

@@ -1,3 +1,4 @@
+// What separable, edge-aware filters of visibility share: strips of the image, along x, then y.
 #include "passes/screen/strip_filter.h"
 
 #include <algorithm>

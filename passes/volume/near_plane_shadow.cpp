@@ -1,3 +1,4 @@
+// Decides between z-fail and z-pass: may the camera's near plane lie in shadow?
 #include "passes/volume/near_plane_shadow.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// The pass planar_shadows: casters projected onto the scene's largest planes.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Finds the flat receivers of a scene: its largest groups of coplanar triangles.
 #include "passes/volume/receiver_planes.h"
 
 #include <algorithm>

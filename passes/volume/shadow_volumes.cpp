@@ -1,3 +1,4 @@
+// The pass shadow_volumes: stencil shadow volumes around every camera pixel.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,3 +1,4 @@
+// Edges and triangles of a scene's casters, as shadow volumes need them on the device.
 #include "passes/volume/silhouette_mesh.h"
 
 #include <algorithm>

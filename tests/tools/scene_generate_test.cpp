@@ -1,3 +1,4 @@
+// The generated scenes: the same bytes every time, watertight, facing outwards.
 #include "tools/scene_generate.h"
 #include "engine/base/resource_root.h"
 #include "engine/light/scene_facts.h"

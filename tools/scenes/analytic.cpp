@@ -1,3 +1,4 @@
+// The scenes square_plane, sphere_plane and area_shapes, whose shadows have closed forms.
 #include <utility>
 
 #include "engine/image/png.h"

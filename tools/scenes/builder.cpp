@@ -1,3 +1,4 @@
+// Builds a glTF 2.0 binary file in memory.
 #include "tools/scenes/builder.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Shapes for the generated scenes; closed ones are watertight.
 #include "tools/scenes/shapes.h"
 
 #include <array>

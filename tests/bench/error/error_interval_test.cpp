@@ -1,3 +1,4 @@
+// Intervals of errors: as wide as tiles drawn at random make them.
 #include "bench/error/error_interval.h"
 
 #include <gtest/gtest.h>

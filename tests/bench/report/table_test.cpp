@@ -1,3 +1,4 @@
+// Tables of result rows, word by word.
 #include "bench/report/table.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Graph files: every mistake with its place, orders, variables, the schema.
 #include "engine/graph/graph.h"
 #include "engine/base/resource_root.h"
 

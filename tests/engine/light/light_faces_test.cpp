@@ -1,3 +1,4 @@
+// Projections of a light's faces: what they hold, and their near and far planes.
 #include <gtest/gtest.h>
 
 #include <cmath>

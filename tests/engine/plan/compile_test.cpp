@@ -1,3 +1,4 @@
+// Plans as text: order, culling, barriers, memory, segments.
 #include "engine/plan/compile.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Passes that only declare, for tests of the compiler.
 #include "engine/light/scene_facts.h"
 #include "tests/engine/plan/fake_passes.h"
 

@@ -1,3 +1,4 @@
+// Loading scenes: what is read, and every kind of broken file.
 #include "engine/scene/scene.h"
 #include "engine/base/resource_root.h"
 #include "engine/light/light_face.h"

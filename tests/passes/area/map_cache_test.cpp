@@ -1,3 +1,4 @@
+// Which samples' maps are kept, moved and rendered again.
 #include "passes/area/map_cache.h"
 
 #include <gtest/gtest.h>

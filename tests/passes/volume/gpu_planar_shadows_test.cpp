@@ -1,3 +1,4 @@
+// Planar shadows against closed forms and the ray tracer.
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "passes/volume/receiver_planes.h"

@@ -1,3 +1,4 @@
+// Shadow volumes against the ray tracer: open, closed and folded meshes, the camera inside.
 #include <random>
 
 #include "tests/engine/truth/analytic_scenes.h"
