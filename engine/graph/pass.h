@@ -18,7 +18,7 @@
 namespace gnomon {
 
 struct SceneFacts;  // engine/light/scene_facts.h
-class Environment;  // engine/render/context.h
+class Environment;  // engine/render/environment.h
 class Context;      // engine/render/context.h
 
 // How a pass touches a port. Flags: a buffer may be read in several ways by one pass.

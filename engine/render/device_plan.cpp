@@ -1,8 +1,11 @@
 // A plan on a device: resources and memory, and every node's layouts and descriptor sets.
 #include "engine/render/device_plan.h"
 
+#include <fmt/format.h>
+
 #include <cstring>
 
+#include "engine/base/error.h"
 #include "engine/render/preamble.h"
 #include "engine/vulkan/commands.h"
 
@@ -52,6 +55,13 @@ VkDescriptorType descriptor_type(const Port& port) {
 }
 
 }  // namespace
+
+const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& resources,
+                            const std::string& port) {
+  const auto found = node.resources.find(port);
+  if (found == node.resources.end()) fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
+  return resources[found->second];
+}
 
 MemoryNeed device_need(const std::shared_ptr<Device>& device, const Resource& r) {
   const uint64_t granularity = device->limits().bufferImageGranularity;

@@ -17,6 +17,10 @@ struct Physical {
   Buffer buffer;
 };
 
+// That of a node's port among `resources` (Plan's order). Error: no such port.
+const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& resources,
+                            const std::string& port);
+
 // One node's own state on the device: layouts, descriptor set and parameter block.
 struct NodeState {
   Handle<VkDescriptorSetLayout> set_layout;

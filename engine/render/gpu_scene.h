@@ -7,19 +7,13 @@
 #include "engine/light/light_face.h"
 #include "engine/light/light_fit.h"
 #include "engine/render/frame_data.h"
+#include "engine/render/raster.h"
 #include "engine/scene/scene.h"
 #include "engine/vulkan/handle.h"
 #include "engine/vulkan/resources.h"
 #include "engine/vulkan/vertex.h"
 
 namespace gnomon {
-
-struct Draw {  // one instance of one mesh
-  uint32_t first_index, index_count;
-  int32_t vertex_offset;
-  uint32_t instance, material;
-  bool double_sided, alpha_masked, mirrored, watertight;
-};
 
 struct FrameView {                 // what a frame shows
   uint32_t camera = 0;             // index into Scene::cameras

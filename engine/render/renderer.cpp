@@ -11,6 +11,8 @@
 #include "engine/plan/compile.h"
 #include "engine/render/context.h"
 #include "engine/render/device_plan.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
 #include "engine/vulkan/handle.h"
 #include "engine/vulkan/readback.h"
 #include "engine/vulkan/timing.h"

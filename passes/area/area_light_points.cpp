@@ -2,6 +2,7 @@
 #include "passes/area/area_light_points.h"
 
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {

@@ -1,5 +1,7 @@
 // The pass area_resolve: weighs the refined samples where the camera sees penumbra.
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 #include "passes/area/area_words.h"
 #include "passes/frame/pixel_list.h"
 

@@ -3,8 +3,13 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/graph/pass.h"
+#include "engine/light/light_face.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 #include "passes/area/sample_maps.h"
 #include "passes/area/temporal_samples.h"
 #include "passes/frame/pixel_list.h"

@@ -3,9 +3,13 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/graph/pass.h"
 #include "engine/light/light_face.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/scene/scene.h"
 #include "passes/area/area_light_points.h"
 #include "passes/area/sample_maps.h"
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/base/error.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {

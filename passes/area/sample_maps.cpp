@@ -6,11 +6,16 @@
 #include <cstring>
 
 #include "engine/base/sobol.h"
+#include "engine/graph/pass.h"
 #include "engine/light/light_face.h"
 #include "engine/light/light_fit.h"
 #include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
 #include "engine/render/frame_data.h"
+#include "engine/render/gpu_scene.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 #include "passes/map/map_domain.h"
 
 namespace gnomon {

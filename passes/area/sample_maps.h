@@ -10,6 +10,9 @@
 #include "engine/graph/pass.h"
 #include "engine/light/light_face.h"
 #include "engine/render/context.h"
+#include "engine/render/raster.h"
+#include "engine/vulkan/pipeline.h"
+#include "engine/vulkan/resources.h"
 #include "passes/map/receiver_ports.h"
 
 namespace gnomon {

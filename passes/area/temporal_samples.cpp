@@ -2,6 +2,7 @@
 #include "passes/area/temporal_samples.h"
 
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 

@@ -1,7 +1,10 @@
 // The pass distance_penumbra: turns the distance to the hard shadow's silhouette into penumbra.
 #include <limits>
 
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/distance/penumbra_width.h"
 
 namespace gnomon {

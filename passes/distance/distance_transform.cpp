@@ -9,6 +9,8 @@
 #include "engine/base/error.h"
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/distance/distance_transform_ports.h"
 #include "passes/distance/penumbra_width.h"
 

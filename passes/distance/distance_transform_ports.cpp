@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 #include "passes/distance/penumbra_width.h"
 
 namespace gnomon::distance_transform {

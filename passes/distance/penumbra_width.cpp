@@ -1,5 +1,7 @@
 // The width of a penumbra, as passes declare and read it.
 #include "passes/distance/penumbra_width.h"
+#include "engine/graph/pass.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 

@@ -1,5 +1,6 @@
 // What a pre-filtered shadow map holds: the basis that depth is transformed to.
 #include "passes/filtered/moment_basis.h"
+#include "engine/graph/pass.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/graph/pass.h"
-#include "engine/render/context.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace gnomon {
 

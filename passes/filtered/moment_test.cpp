@@ -1,5 +1,9 @@
 // The pass moment_test: visibility from a pre-filtered shadow map.
+#include "engine/graph/pass.h"
+#include "engine/light/light_face.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/filtered/moment_basis.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"

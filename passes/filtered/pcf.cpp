@@ -1,5 +1,9 @@
 // The pass pcf: percentage-closer filtering.
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/render_settings.h"
+#include "engine/scene/scene.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/min_max_map.h"
 #include "passes/map/receiver_ports.h"

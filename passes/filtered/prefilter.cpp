@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <bit>
 
+#include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 #include "passes/filtered/moment_basis.h"
 #include "passes/map/receiver_ports.h"
 

@@ -2,7 +2,10 @@
 #include <algorithm>
 
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/frame/pixel_list.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"

@@ -1,5 +1,7 @@
 // The pass shadow_moments: transforms a shadow map's depth to a technique's basis.
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 #include "passes/filtered/moment_basis.h"
 #include "passes/map/receiver_ports.h"
 

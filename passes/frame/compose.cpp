@@ -1,6 +1,7 @@
 // The pass compose: shades the G-buffer with all lights and their visibility.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 
 namespace gnomon {
 namespace {

@@ -1,6 +1,8 @@
 // The pass gbuffer: depth, normals and albedo of what the camera sees.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/render_settings.h"
 
 namespace gnomon {
 namespace {

@@ -2,8 +2,12 @@
 #include <fmt/format.h>
 
 #include "engine/base/error.h"
+#include "engine/graph/pass.h"
 #include "engine/image/image.h"
+#include "engine/light/light_face.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/render_settings.h"
 
 namespace gnomon {
 namespace {

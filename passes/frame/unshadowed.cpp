@@ -1,6 +1,7 @@
 // The pass unshadowed: visibility where nothing casts a shadow.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 
 namespace gnomon {
 namespace {

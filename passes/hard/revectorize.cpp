@@ -1,6 +1,9 @@
 // The pass revectorize: revectorization-based shadow mapping.
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/frame/pixel_list.h"
 #include "passes/map/receiver_ports.h"
 

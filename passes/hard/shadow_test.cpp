@@ -1,5 +1,8 @@
 // The pass shadow_test: the shadow-map test of every camera pixel.
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/map/receiver_ports.h"
 
 namespace gnomon {

@@ -6,7 +6,13 @@
 #include <algorithm>
 
 #include "engine/light/caster_culling.h"
+#include "engine/light/light_face.h"
 #include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/render/render_settings.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {

@@ -2,12 +2,16 @@
 // date while the scene moves.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/render/context.h"
+#include "engine/graph/pass.h"
+#include "engine/render/raster.h"
 
 namespace gnomon {
+
+class GpuScene;  // engine/render/gpu_scene.h
 
 class CasterLayers {
  public:

@@ -9,7 +9,11 @@
 #include <numbers>
 
 #include "engine/light/light_face.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/render/render_settings.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {

@@ -1,7 +1,12 @@
 // Ports and bias parameters of everything that tests camera pixels against a shadow map.
 #include "passes/map/receiver_ports.h"
+#include "engine/graph/pass.h"
 #include "engine/light/light_face.h"
 #include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/scene/scene.h"
 
 #include <fmt/format.h>
 

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
-#include "engine/render/context.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace gnomon {
 

@@ -1,8 +1,11 @@
 // The pass shadow_map: the scene's depth from every light.
 #include <string>
 
+#include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/render_settings.h"
 #include "passes/map/caster_layers.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"

@@ -1,4 +1,5 @@
 // The pass bilateral_filter: visibility averaged by distance from the pixel and its tangent plane.
+#include "engine/graph/pass.h"
 #include "passes/screen/strip_filter.h"
 
 namespace gnomon {

@@ -1,4 +1,5 @@
 // The pass mean_filter: visibility averaged over each pixel's surroundings on its own surface.
+#include "engine/graph/pass.h"
 #include "passes/screen/strip_filter.h"
 
 namespace gnomon {

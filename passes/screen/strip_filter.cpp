@@ -7,7 +7,11 @@
 #include <string>
 
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/render_settings.h"
 
 namespace gnomon {
 namespace {

@@ -3,8 +3,9 @@
 // shaders/glsl/screen/strip_filter.glsl.
 #pragma once
 
+#include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
-#include "engine/render/context.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace gnomon {
 

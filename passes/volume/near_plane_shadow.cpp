@@ -1,5 +1,6 @@
 // Decides between z-fail and z-pass: may the camera's near plane lie in shadow?
 #include "passes/volume/near_plane_shadow.h"
+#include "engine/scene/scene.h"
 
 #include <cmath>
 

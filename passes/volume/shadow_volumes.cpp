@@ -7,6 +7,10 @@
 #include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/render/render_settings.h"
+#include "engine/scene/scene.h"
 #include "passes/volume/near_plane_shadow.h"
 #include "passes/volume/silhouette_mesh.h"
 

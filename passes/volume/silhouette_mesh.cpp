@@ -1,5 +1,7 @@
 // Edges and triangles of a scene's casters, as shadow volumes need them on the device.
 #include "passes/volume/silhouette_mesh.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/scene/scene.h"
 
 #include <algorithm>
 #include <numeric>

@@ -15,6 +15,8 @@
 #include "engine/base/resource_root.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/renderer.h"
 #include "engine/vulkan/shader.h"
 #include "tests/engine/truth/analytic_scenes.h"
 #include "tests/passes/hard/hard_shadow_run.h"

@@ -13,6 +13,7 @@
 #include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 #include "tests/engine/truth/analytic_scenes.h"
 #include "tests/shaders/gpu_kernel_helper.h"
 

@@ -9,6 +9,8 @@
 #include "engine/base/error.h"
 #include "engine/graph/graph.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/renderer.h"
 #include "tests/engine/truth/analytic_scenes.h"
 #include "tests/passes/distance/gpu_distance_oracle.h"
 #include "tests/passes/silent_test.h"
