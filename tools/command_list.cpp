@@ -47,6 +47,23 @@ std::string range_of(const ParamSpec& spec) {
   return "?";
 }
 
+std::string joined(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// What outputs say of themselves, and what is taken from inputs' sources.
+void list_traits(const Declaration& declaration) {
+  for (const Port& port : declaration.ports()) {
+    std::vector<std::string> said, taken;
+    if (port.direction != Direction::in)
+      for (const auto& [key, value] : port.traits) said.push_back(key);
+    for (const ParamSpec& spec : declaration.param_specs())
+      if (spec.from == port.name) taken.push_back(spec.name);
+    if (!said.empty()) fmt::print("  trait {:<18}says {}\n", port.name, joined(said));
+    if (!taken.empty()) fmt::print("  trait {:<18}is asked for {}\n", port.name, joined(taken));
+  }
+}
+
 void list_passes() {
   for (const std::string& type : PassRegistry::instance().types()) {
     Declaration declaration;
@@ -59,8 +76,10 @@ void list_passes() {
                  port.optional ? "(optional) " : "", port.help);
     }
     for (const ParamSpec& spec : declaration.param_specs())
-      fmt::print("  param {:<18}{} [default {}; {}]\n", spec.name, spec.help, to_string(spec.standard),
-                 range_of(spec));
+      if (spec.from.empty())
+        fmt::print("  param {:<18}{} [default {}; {}]\n", spec.name, spec.help, to_string(spec.standard),
+                   range_of(spec));
+    list_traits(declaration);
     fmt::print("\n");
   }
 }

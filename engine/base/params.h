@@ -26,6 +26,7 @@ struct ParamSpec {
   std::vector<std::string> choices;  // of a choice, in order; the index is the value GLSL sees
   std::string unit;                  // "texels", "world units", "1" for a plain ratio, ...
   std::string help;
+  std::string from = {};  // the input whose traits say the value; empty: a graph file does
 };
 
 // The values of one pass instance, complete (defaults filled in) and in range. Look-ups are remembered, so

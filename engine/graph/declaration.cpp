@@ -176,8 +176,10 @@ void Declaration::refuse(std::string_view name, std::string_view must_be) {
 ImageShape Declaration::input(std::string name, Access access, bool array, std::string help) {
   check_new(ports_, name, "port");
   Port port = make_port(std::move(name), Direction::in, access, false, array, std::move(help));
-  if (const Connected* connected = lookup(inputs_, port.name))
+  if (const Connected* connected = lookup(inputs_, port.name)) {
     port.image = connected->image.value_or(ImageShape{});
+    port.traits = connected->traits;
+  }
   ports_.push_back(std::move(port));
   return ports_.back().image;
 }
@@ -226,8 +228,10 @@ void Declaration::reads_around(std::string_view input, uint32_t texels, std::str
 BufferShape Declaration::input_buffer(std::string name, Access access, std::string help) {
   check_new(ports_, name, "port");
   Port port = make_port(std::move(name), Direction::in, access, true, false, std::move(help));
-  if (const Connected* connected = lookup(inputs_, port.name))
+  if (const Connected* connected = lookup(inputs_, port.name)) {
     port.buffer = connected->buffer.value_or(BufferShape{});
+    port.traits = connected->traits;
+  }
   ports_.push_back(std::move(port));
   return ports_.back().buffer;
 }
@@ -268,8 +272,12 @@ const Port* Declaration::find(std::string_view port) const {
 
 std::vector<std::string> Declaration::undeclared() const {
   std::vector<std::string> names;
+  const auto settable = [&](const std::string& name) {
+    return std::any_of(specs_.begin(), specs_.end(),
+                       [&](const ParamSpec& spec) { return spec.name == name && spec.from.empty(); });
+  };
   for (const auto& [name, value] : given_)
-    if (!has_name(specs_, name)) names.push_back(name);
+    if (!settable(name)) names.push_back(name);
   return names;
 }
 

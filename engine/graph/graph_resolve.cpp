@@ -177,6 +177,7 @@ class Resolver {
     const Port* found = source.declaration.find(port);
     if (!found) return;
     Declaration::Connected& connected = inputs[input];
+    connected.traits = found->traits;
     if (found->is_buffer) {
       connected.buffer = found->buffer;
     } else {
@@ -224,6 +225,7 @@ class Resolver {
   void check_node(ResolvedNode& node) {
     check_params(node);
     for (const auto& [port, ref] : node.node->in) check_input(node, port);
+    for (const auto& [port, why] : node.declaration.source_errors()) refuse_source(node, port, why);
     for (const Port& port : node.declaration.ports()) {
       const bool input = port.direction == Direction::in || port.direction == Direction::inout;
       if (input && !port.optional && !node.node->in.contains(port.name))
@@ -244,14 +246,35 @@ class Resolver {
   void check_params(ResolvedNode& node) {
     const std::string place = pointer_to(node.node->place, "params");
     std::vector<std::string> names;
-    for (const ParamSpec& spec : node.declaration.param_specs()) names.push_back(spec.name);
+    std::map<std::string, std::string> from;
+    for (const ParamSpec& spec : node.declaration.param_specs())
+      spec.from.empty() ? names.push_back(spec.name) : void(from[spec.name] = spec.from);
     for (const std::string& name : node.declaration.undeclared())
-      unsound(node, "unknown parameter " + in_quotes(name) + " of '" + node.node->type + "'",
-              pointer_to(place, name), did_you_mean(name, names));
+      from.contains(name)
+          ? unsound(node,
+                    "'" + name + "' of '" + node.node->type + "' is not set here: it comes with input '" +
+                        from[name] + "'",
+                    pointer_to(place, name), "set it where what is read is made")
+          : unsound(node, "unknown parameter " + in_quotes(name) + " of '" + node.node->type + "'",
+                    pointer_to(place, name), did_you_mean(name, names));
     for (const std::string& sentence : node.declaration.value_errors()) {
       const std::string name = sentence.substr(1, sentence.find('\'', 1) - 1);  // "'size' is 0: must be ..."
       unsound(node, sentence, pointer_to(place, name));
     }
+  }
+
+  // The pass cannot use what is connected, though its shape would do.
+  void refuse_source(ResolvedNode& node, const std::string& input, const std::string& why) {
+    const auto& sources = node.previous.contains(input) ? node.previous : node.in;
+    const auto source = sources.find(input);
+    if (source == sources.end()) return;
+    const ResolvedNode& from = result_.nodes[source->second.node];
+    if (!from.sound) return;
+    unsound(node, who(node) + " cannot read '" + source->second.port + "' of " + who(from) + ": it " + why,
+            in_place(node, input), "'" + from.node->id + "' is at " + from.node->place);
+  }
+  static std::string who(const ResolvedNode& node) {
+    return "'" + node.node->id + "' (" + node.node->type + ")";
   }
 
   void check_input(ResolvedNode& node, const std::string& name) {

@@ -51,6 +51,7 @@ std::vector<Declaration> variants(const Pass& pass) {
     pass.declare(result.back());
   };
   for (const ParamSpec& spec : specs) {
+    if (!spec.from.empty()) continue;
     if (spec.type == ParamType::flag) add(spec.name, !std::get<bool>(spec.standard));
     for (const std::string& choice : spec.choices) add(spec.name, choice);
   }
@@ -76,7 +77,7 @@ json params_schema(const std::vector<Declaration>& variants) {
   json params = json::object();
   for (const Declaration& declaration : variants)
     for (const ParamSpec& spec : declaration.param_specs())
-      if (!params.contains(spec.name)) params[spec.name] = param_schema(spec);
+      if (spec.from.empty() && !params.contains(spec.name)) params[spec.name] = param_schema(spec);
   return {{"type", "object"}, {"properties", params}, {"additionalProperties", false}};
 }
 

@@ -59,6 +59,7 @@ struct Port {
   std::string reach_through;  // then the output that those texels are read for; empty: the map ends here
   ImageShape image;           // of an input: that of the connected output
   BufferShape buffer;
+  Values traits;  // of an input: what its source says of itself; of an output: what this pass does
   std::string help;
 };
 
@@ -100,10 +101,11 @@ class Declaration {
         1;  // shadow-map layers: 1 for each spot or directional light, 6 for each point light
     uint64_t memory = uint64_t{1} << 30;  // bytes that a technique's shadow maps may take at a time
   };
-  // shapes of the connected outputs, by input name; empty: nothing is connected (listing)
+  // shapes and traits of the connected outputs, by input name; empty: nothing is connected (listing)
   struct Connected {
     std::optional<ImageShape> image;
     std::optional<BufferShape> buffer;
+    Values traits = {};
   };
   using Inputs = std::map<std::string, Connected, std::less<>>;
 
@@ -147,6 +149,21 @@ class Declaration {
   // Casters that only unread texels show need not be drawn (Environment::reach).
   void reads_around(std::string_view input, uint32_t texels, std::string_view through = {});
 
+  // Traits: what is true of an output beside its shape, by name, for those who read it: how depth is encoded,
+  // what was filtered. The engine carries them and knows none of them.
+  void set_trait(std::string_view output, std::string key, Value value);
+  // What the source of an input says of itself is true of the output, too, but for what is set later. An
+  // inout has its source's traits by itself.
+  void carry_traits(std::string_view input, std::string_view output);
+  // Of an input's source; nullptr: it says nothing of that, or nothing is connected.
+  const Value* trait(std::string_view input, std::string_view key) const;
+  bool is_connected(std::string_view input) const;
+  // The source of `input` is not what this pass can read: "holds moments, not depth". Told with both nodes.
+  void refuse_source(std::string_view input, std::string why);
+  // A value that `input`'s source decides (spec.standard): the pass and its shaders see it as a parameter; a
+  // graph file cannot set it.
+  void derived(std::string_view input, ParamSpec spec);
+
   // This pass darkens surfaces that no caster shades: with its own errors it stays even then.
   void darkens_lit_surfaces() { darkens_ = true; }
 
@@ -167,8 +184,12 @@ class Declaration {
   // Values given but not declared are for the caller to report; out-of-range or mistyped ones are collected
   // here as sentences ("'size' is 0: must be in 1..16384 texels").
   const std::vector<std::string>& value_errors() const { return value_errors_; }
-  std::vector<std::string> undeclared() const;  // names given that declare() did not declare
-  Params params() const;                        // every declared parameter, given value or default
+  std::vector<std::string> undeclared() const;  // names given that are no parameter of a graph file
+  Params params() const;                        // every parameter: given value, default, or derived
+  struct SourceError {
+    std::string input, why;
+  };
+  const std::vector<SourceError>& source_errors() const { return source_errors_; }
 
  private:
   Setting setting_;
@@ -180,6 +201,9 @@ class Declaration {
   std::vector<Port> ports_;
   std::vector<ParamSpec> specs_;
   std::vector<std::string> value_errors_;
+  std::vector<SourceError> source_errors_;
+
+  Port& declared(std::string_view port);
 };
 
 // What a loop's controller sees when the segment that wrote its host-read inputs is done.

@@ -26,8 +26,8 @@ class MomentTest : public Pass {
         d.input("moments", Access::sampled, true, "the filtered basis; a face's layers follow each other");
     d.reads_around("shadow_map", 1);
     if (moments.mips == 1) d.reads_around("moments", 2);
-    declare_basis(d);
-    declare_kernel(d);
+    read_basis(d, "moments");
+    refuse_another_map(d);
     d.choice("bound", "chebyshev", {"chebyshev", "gaussian", "gaussian_cdf"},
              "variance bases: Chebyshev's inequality, twice the upper tail of "
              "a normal distribution, or its plain tail, "
@@ -51,6 +51,16 @@ class MomentTest : public Pass {
   void record(Context& c) override { test_.dispatch_all(c); }
 
  private:
+  // The map that tells receivers' places and bias is the one that the moments are made of.
+  static void refuse_another_map(Declaration& d) {
+    for (const auto& [key, value] : d.find("shadow_map")->traits) {
+      const Value* of_moments = d.trait("moments", key);
+      if (of_moments && *of_moments != value)
+        return d.refuse_source("moments", "is made of another map than 'shadow_map': its " + key + " is " +
+                                              to_string(*of_moments) + ", not " + to_string(value));
+    }
+  }
+
   static void declare_thresholds(Declaration& d) {
     d.number("minimum_variance", 1e-6, 1e-9, 1e-2, "depth range squared",
              "variance bases: the least that counts");

@@ -8,6 +8,7 @@
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
 #include "engine/render/render_settings.h"
+#include "passes/map/map_traits.h"
 
 namespace gnomon {
 namespace {
@@ -21,6 +22,11 @@ class ImageSource : public Pass {
     d.output("value", Access::transfer_write, true,
              {d.setting().viewport, 1, 1, mask ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT},
              "the image's first channel");
+    const bool depth =
+        d.choice("holds", "values", {"values", "depth"},
+                 "what the image is: values, or depth from the light, a shadow map") == "depth";
+    if (depth && mask) d.refuse("holds", "\"values\" with mask");
+    if (depth) set_depth_map(d, "value", declare_depth_map(d));
   }
 
   void prepare(Environment& e) override {

@@ -1,4 +1,4 @@
-// Ports and bias parameters of everything that tests camera pixels against a shadow map.
+// Ports of everything that tests camera pixels against a shadow map.
 #include "passes/map/receiver_ports.h"
 #include "engine/graph/pass.h"
 #include "engine/light/light_face.h"
@@ -7,54 +7,18 @@
 #include "engine/render/environment.h"
 #include "engine/render/gpu_scene.h"
 #include "engine/scene/scene.h"
+#include "passes/map/map_traits.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 namespace gnomon {
-namespace {
-
-struct BiasDefaults {
-  double constant, slope, normal;
-};
-
-// In texels. Chosen by measurement (bench/suites/bias.json) as the least bias that leaves no acne.
-BiasDefaults bias_defaults(const std::string& method) {
-  if (method == "constant") return {8.0, 0.0, 0.0};
-  if (method == "slope_scaled") return {1.0, 1.5, 0.0};
-  if (method == "receiver_plane") return {0.5, 0.2, 0.0};
-  if (method == "normal_offset") return {1.0, 0.0, 2.0};
-  if (method == "back_face") return {1.0, 1.5, 0.0};
-  if (method == "midpoint") return {1.0, 1.5, 0.0};
-  return {0.0, 0.0, 0.0};
-}
-
-}  // namespace
-
-void declare_encoding(Declaration& d) {
-  d.choice("encoding", "perspective", {"perspective", "linear"},
-           "depth in the shadow map (Rzeczkowski 2024, eq. 3.6 or 3.7)");
-}
-
-std::string declare_bias(Declaration& d) {
-  return d.choice(
-      "bias", "receiver_plane",
-      {"none", "constant", "slope_scaled", "receiver_plane", "normal_offset", "back_face", "midpoint"},
-      "how self-shadowing is avoided");
-}
-
 ImageShape declare_receiver(Declaration& d) {
   const ImageShape depth = d.input("depth", Access::sampled, false, "the camera's device depth");
   d.input("geometric", Access::sampled, false, "octahedral geometric normal");
   d.input("shadow_map", Access::sampled, true, "depth from the light, a layer a face");
-  declare_encoding(d);
-  const BiasDefaults standard = bias_defaults(declare_bias(d));
-  d.number("bias_constant", standard.constant, 0, 1000, "texels", "shift of the receiver towards the light");
-  d.number("bias_slope", standard.slope, 0, 1000, "texels", "further shift, times the receiver's slope");
-  d.number("bias_normal", standard.normal, 0, 1000, "texels",
-           "shift along the geometric normal, times the sine of the light's angle to it (normal_offset)");
+  read_depth_map(d, "shadow_map");
   return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
 }
 

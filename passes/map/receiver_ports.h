@@ -1,5 +1,5 @@
-// What every technique that tests camera pixels against a shadow map has in common: ports and bias
-// parameters, as shaders/glsl/map/shadow_query.glsl uses them.
+// What every technique that tests camera pixels against a shadow map has in common: ports and what
+// the map says of itself, as shaders/glsl/map/shadow_query.glsl uses them.
 #pragma once
 
 #include <array>
@@ -11,12 +11,8 @@
 
 namespace gnomon {
 
-// Parameter of the shadow map and of its readers; both must have the same value.
-void declare_encoding(Declaration& d);
-std::string declare_bias(Declaration& d);
-
-// Inputs `depth`, `geometric`, `shadow_map`; parameters `encoding`, `bias`, `bias_constant`, `bias_slope`,
-// `bias_normal`. Returns the shape of a visibility image: one layer a light.
+// Inputs `depth`, `geometric`, `shadow_map`, whose source says `encoding`, `bias`, `bias_constant`,
+// `bias_slope`, `bias_normal` (map_traits.h). Returns the shape of a visibility image: one layer a light.
 ImageShape declare_receiver(Declaration& d);
 
 // Parameter `kernel`: width of a filter in the shadow map, odd, in texels.

@@ -8,7 +8,7 @@
 #include "engine/render/render_settings.h"
 #include "passes/map/caster_layers.h"
 #include "passes/map/map_domain.h"
-#include "passes/map/receiver_ports.h"
+#include "passes/map/map_traits.h"
 
 namespace gnomon {
 namespace {
@@ -22,8 +22,8 @@ class ShadowMap : public Pass {
         "light.");
     d.cite("Williams 1978; depth encodings: Rzeczkowski 2024, eq. 3.5-3.8; midpoint: Woo 1992");
     const uint32_t size = uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each face"));
-    declare_encoding(d);
-    const bool midpoint = declare_bias(d) == "midpoint";
+    const DepthMapTraits traits = declare_depth_map(d);
+    const bool midpoint = traits.bias == "midpoint";
     const bool cache = d.flag("cache", false, "keep the map while no light and no caster moves");
     const ImageShape faces{{size, size}, d.setting().map_faces, 1, VK_FORMAT_D32_SFLOAT};
     ImageShape merged = faces;
@@ -35,6 +35,7 @@ class ShadowMap : public Pass {
     } else {
       d.output("depth", Access::depth, true, faces, "depth of the first surface; 1 where there is none");
     }
+    set_depth_map(d, "depth", traits);
     if (cache) d.keep("depth");
   }
 

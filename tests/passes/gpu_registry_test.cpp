@@ -310,6 +310,8 @@ std::string shape_text(const Declaration& d) {
     text << p.name << ' ' << uint32_t(p.access) << ' ' << p.image.extent.width << 'x' << p.image.extent.height
          << ' ' << p.image.layers << ' ' << p.image.mips << ' ' << p.image.format << ' ' << p.buffer.count
          << ' ' << p.buffer.stride << '\n';
+  for (const Port& p : d.ports())
+    for (const auto& [key, value] : p.traits) text << key << ' ' << to_string(value) << '\n';
   for (const ParamSpec& s : d.param_specs()) text << s.name << ' ' << to_string(s.standard) << '\n';
   return text.str();
 }

@@ -57,7 +57,7 @@ std::shared_ptr<const Image> depth_of(const VisibilityMap& map) {
 
 std::vector<float> filtered(const VisibilityMap& map, const std::string& type, const std::string& params) {
   const std::string graph = R"({ "schema": 1, "name": "test", "passes": [
-    { "id": "gbuffer", "type": "gbuffer" }, { "id": "map", "type": "image_source" },
+    { "id": "gbuffer", "type": "gbuffer" }, { "id": "map", "type": "image_source", "params": { "holds": "depth" } },
     { "id": "filter", "type": ")" +
                             type + R"(", "params": {)" + params + R"(},
       "in": { "depth": "gbuffer.depth", "geometric": "gbuffer.geometric", "shadow_map": "map.value" } } ],
