@@ -7,6 +7,7 @@
 
 #include "engine/light/scene_facts.h"
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
@@ -213,8 +214,7 @@ TEST_P(EveryGraphLeavesOut, LightsWithoutSize) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryGraphLeavesOut, testing::ValuesIn(graphs()),
-                         [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(All, EveryGraphLeavesOut, testing::ValuesIn(graphs()), test::ParameterName());
 
 // More lights than the G-buffer has room for.
 TEST(LeavingOut, ManyLightsWithoutShadows) {

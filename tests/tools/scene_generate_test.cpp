@@ -2,6 +2,7 @@
 #include "tools/scene_generate.h"
 #include "engine/base/resource_root.h"
 #include "engine/light/scene_facts.h"
+#include "tests/parameter_name.h"
 
 #include <gtest/gtest.h>
 
@@ -100,8 +101,7 @@ std::vector<std::string> names() {
   return result;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, GeneratedScene, testing::ValuesIn(names()),
-                         [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(All, GeneratedScene, testing::ValuesIn(names()), test::ParameterName());
 
 TEST(SceneGenerate, UnknownNameIsAnErrorWithAHint) {
   try {

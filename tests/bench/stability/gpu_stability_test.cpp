@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "bench/stability/stability.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/silent_test.h"
 
 namespace gnomon {
@@ -33,12 +34,7 @@ StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool 
 }
 
 class EveryTechnique : public test::Silent, public testing::WithParamInterface<fs::path> {};
-INSTANTIATE_TEST_SUITE_P(Stability, EveryTechnique, testing::ValuesIn(all_graphs()), [](const auto& info) {
-  std::string name = info.param.stem().string();
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Stability, EveryTechnique, testing::ValuesIn(all_graphs()), test::ParameterName());
 
 // Those with a pass that weighs the points of an area light are judged against the area light.
 bool samples_the_light(const fs::path& graph) { return graph.stem().string().starts_with("area_"); }

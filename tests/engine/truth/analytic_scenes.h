@@ -73,6 +73,11 @@ inline Camera camera(const glm::dvec3& eye, const glm::dvec3& target) {
   return camera;
 }
 
+inline const char* name_of(LightType type) {
+  const char* names[] = {"spot", "point", "directional"};
+  return names[int(type)];
+}
+
 inline Light light(LightType type, const glm::dvec3& at, const glm::dvec3& target = {0, 0, 0}) {
   Light light;
   light.type = type;

@@ -7,6 +7,7 @@
 #include "engine/graph/graph.h"
 #include "engine/light/light_face.h"
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 #include "tests/shaders/gpu_revectorization_helper.h"
 
@@ -161,13 +162,18 @@ struct RpcfCase {
   double shadow;
   int grain, kernel, max_size;
 };
+void PrintTo(const RpcfCase& c, std::ostream* out) {
+  *out << "kernel " << c.kernel << " size " << c.max_size << " grain " << c.grain << " shadow "
+       << 100 * c.shadow << " percent";
+}
 class RevectorizationBasedFilter : public testing::TestWithParam<RpcfCase> {};
 INSTANTIATE_TEST_SUITE_P(All, RevectorizationBasedFilter,
                          testing::Values(RpcfCase{0.5, 1, 1, 16}, RpcfCase{0.3, 3, 1, 255},
                                          RpcfCase{0.2, 1, 3, 16}, RpcfCase{0.5, 7, 7, 16},
                                          RpcfCase{0.4, 4, 7, 3}, RpcfCase{0.3, 9, 7, 255},
                                          RpcfCase{0.5, 5, 15, 1}, RpcfCase{0.1, 11, 29, 16},
-                                         RpcfCase{0.6, 13, 63, 31}));
+                                         RpcfCase{0.6, 13, 63, 31}),
+                         test::ParameterName());
 
 std::string rpcf_params(const RpcfCase& c, bool reuse, bool list) {
   return "\"kernel\": " + std::to_string(c.kernel) + ", \"max_size\": " + std::to_string(c.max_size) +

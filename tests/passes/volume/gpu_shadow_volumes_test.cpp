@@ -2,6 +2,7 @@
 #include <random>
 
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
@@ -77,9 +78,8 @@ struct Case {
   LightType type;
   bool reversed_z;
 };
-std::string name_of(const testing::TestParamInfo<Case>& info) {
-  const char* types[] = {"spot", "point", "directional"};
-  return std::string(types[int(info.param.type)]) + (info.param.reversed_z ? "_reversed" : "_standard");
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << analytic::name_of(c.type) << (c.reversed_z ? " reversed" : " standard");
 }
 
 class ShadowVolumesCase : public testing::TestWithParam<Case> {};
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShadowVolumesCase,
                                          Case{LightType::point, true}, Case{LightType::point, false},
                                          Case{LightType::directional, true},
                                          Case{LightType::directional, false}),
-                         name_of);
+                         test::ParameterName());
 
 // Shares of the counted pixels: a handful of those that a true edge passes within rounding of their centre.
 constexpr double kBound = 5e-4;
