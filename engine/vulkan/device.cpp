@@ -9,11 +9,13 @@
 #include <cstring>
 
 #include "engine/base/error.h"
+#include "engine/vulkan/pipeline_store.h"
 
 namespace gnomon {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+constexpr size_t kPipelinesKept = 64;  // several techniques with all their variants
 constexpr const char* kNoDeviceHint =
     "install a Vulkan driver; without a GPU, Mesa's lavapipe (Debian: mesa-vulkan-drivers)";
 
@@ -99,6 +101,7 @@ Device::Device(const DeviceOptions& options) {
 Device::~Device() { destroy(); }
 
 void Device::destroy() {
+  pipelines_.reset();
   if (device_) vkDestroyDevice(device_, nullptr);
   if (messenger_) destroy_messenger_(instance_, messenger_, nullptr);
   if (instance_) vkDestroyInstance(instance_, nullptr);
@@ -232,6 +235,7 @@ void Device::make_device() {
   info.pQueueCreateInfos = &queue;
   check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+  pipelines_ = std::make_unique<PipelineStore>(device_, kPipelinesKept);
 }
 
 uint32_t Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted) const {
