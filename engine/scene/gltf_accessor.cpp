@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "engine/base/error.h"
 
@@ -140,9 +141,10 @@ glm::vec4 element_at(const Strided& from, size_t index, const Layout& layout, gl
 void apply_sparse(const GltfFile& gltf, const tinygltf::Accessor& accessor, const Layout& layout,
                   const glm::vec4& fill, const std::string& place, std::vector<glm::vec4>& values) {
   const auto& sparse = accessor.sparse;
+  // Signed or not, as the version of tinygltf has it.
   if (sparse.count < 0 || static_cast<size_t>(sparse.count) > values.size() ||
-      !is_index_type(sparse.indices.componentType) || sparse.indices.byteOffset < 0 ||
-      sparse.values.byteOffset < 0)
+      !is_index_type(sparse.indices.componentType) || std::cmp_less(sparse.indices.byteOffset, 0) ||
+      std::cmp_less(sparse.values.byteOffset, 0))
     fail("the sparse part of its accessor is broken", gltf.file, place);
   const size_t count = static_cast<size_t>(sparse.count);
   const Strided where =

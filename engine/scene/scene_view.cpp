@@ -53,7 +53,7 @@ class LightReader {
     const auto extension = node.extensions.find("KHR_lights_punctual");
     if (extension == node.extensions.end()) return;
     const std::string place = at("/nodes", placed.node);
-    const tinygltf::Value& reference = member(extension->second, "light");
+    const tinygltf::Value reference = member(extension->second, "light");
     const int index = reference.IsInt() ? reference.GetNumberAsInt() : -1;
     if (index < 0 || static_cast<size_t>(index) >= gltf_.model.lights.size())
       fail("no light " + std::to_string(index) + "; there are " + std::to_string(gltf_.model.lights.size()),
