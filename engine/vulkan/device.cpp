@@ -182,24 +182,46 @@ void Device::choose_physical(const std::string& name_part) {
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 }
 
+// All that is missing at once.
 void Device::check_features() {
-  VkPhysicalDeviceVulkan12Features have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceFeatures2 asked{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &have, {}};
+  VkPhysicalDeviceVulkan13Features f13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceVulkan12Features f12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &f13};
+  VkPhysicalDeviceFeatures2 asked{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &f12, {}};
   vkGetPhysicalDeviceFeatures2(physical_, &asked);
-  if (!have.shaderOutputLayer)
-    fail(fmt::format("'{}' cannot choose a layer in the vertex shader", info_.name), {}, {},
-         "Gnomon needs the Vulkan 1.2 feature shaderOutputLayer");
+  const VkPhysicalDeviceFeatures& f10 = asked.features;
   VkPhysicalDeviceVulkan13Properties sizes{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES};
   VkPhysicalDeviceVulkan11Properties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
                                                &sizes};
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups, {}};
   vkGetPhysicalDeviceProperties2(physical_, &properties);
   subgroup_size_ = subgroups.subgroupSize;
-  if (!(subgroups.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) || subgroup_size_ < 4 ||
-      !(sizes.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT))
-    fail(fmt::format("'{}' has no compute subgroups that can shuffle", info_.name), {}, {},
-         "Gnomon needs subgroups of 4 invocations or more, VK_SUBGROUP_FEATURE_SHUFFLE_BIT, and compute in "
-         "requiredSubgroupSizeStages");
+  const bool shuffles = subgroups.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+  const struct {
+    bool there;
+    const char* what;
+  } needed[] = {
+      {f10.geometryShader == VK_TRUE, "geometryShader (a triangle's number in the fragment shader)"},
+      {f10.depthClamp == VK_TRUE, "depthClamp"},
+      {f10.occlusionQueryPrecise == VK_TRUE, "occlusionQueryPrecise"},
+      {f10.fragmentStoresAndAtomics == VK_TRUE, "fragmentStoresAndAtomics"},
+      {f10.shaderClipDistance == VK_TRUE, "shaderClipDistance"},
+      {f10.independentBlend == VK_TRUE, "independentBlend"},
+      {f10.imageCubeArray == VK_TRUE, "imageCubeArray"},
+      {f12.shaderOutputLayer == VK_TRUE, "shaderOutputLayer (a layer chosen in the vertex shader)"},
+      {f13.synchronization2 == VK_TRUE, "synchronization2"},
+      {f13.dynamicRendering == VK_TRUE, "dynamicRendering"},
+      {f13.maintenance4 == VK_TRUE, "maintenance4"},
+      {f13.subgroupSizeControl == VK_TRUE, "subgroupSizeControl"},
+      {shuffles && subgroup_size_ >= 4, "subgroups of 4 invocations or more that shuffle"},
+      {(sizes.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0,
+       "compute in requiredSubgroupSizeStages"},
+  };
+  std::string missing;
+  for (const auto& one : needed)
+    if (!one.there) missing += (missing.empty() ? "" : ", ") + std::string(one.what);
+  if (!missing.empty())
+    fail(fmt::format("'{}' lacks what Gnomon needs: {}", info_.name, missing), {}, {},
+         "choose another device (gnomon list devices)");
 }
 
 void Device::make_device() {

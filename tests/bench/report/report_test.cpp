@@ -161,7 +161,8 @@ TEST(Report, CsvHasALinePerRowAndQuotes) {
 class Merge : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "report_merge";
+    folder_ = fs::path(testing::TempDir()) /
+              ("report_merge_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "a");
     fs::create_directories(folder_ / "b");
