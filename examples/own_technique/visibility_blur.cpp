@@ -1,6 +1,7 @@
 // The pass visibility_blur: the mean of the visibility over a square of pixels.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 
 namespace {
 

@@ -150,8 +150,9 @@ TEST_P(EveryGraph, RunsRepeatsAndIsTheSameHoweverItIsSetUp) {
     expect_in_range(first, small(), scene->lights.size(), name);
     if (has_history(graph.nodes)) renderer.play();  // begins again
     EXPECT_TRUE(same(first, frame(renderer, graph))) << name << ": two frames differ";
-    if (name == scenes().back().first)  // with all passes there, memory is shared in other ways
+    if (name == scenes().back().first) {  // with all passes there, memory is shared in other ways
       EXPECT_LE(largest_difference(first, frame(scene, graph, kept)), kRounding) << name;
+    }
     const Outputs other = frame(scene, graph, whole);
     if (same(first, other)) continue;
     EXPECT_LE(largest_difference(first, other), kRounding) << name << ": leaving out shows";
