@@ -32,8 +32,7 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
   Declaration::Setting setting;
   setting.viewport = size;
   setting.lights = static_cast<uint32_t>(scene.lights.size());
-  setting.map_faces = 0;
-  for (const Light& light : scene.lights) setting.map_faces += light.type == LightType::point ? 6 : 1;
+  for (const Light& light : scene.lights) setting.light_types.push_back(light.type);
   return compile(
       graph, setting,
       scene_facts(scene, camera, camera.aspect.value_or(double(size.width) / size.height), size.height));

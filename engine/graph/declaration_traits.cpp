@@ -22,6 +22,7 @@ void Declaration::carry_traits(std::string_view input, std::string_view output) 
   const Values& carried = declared(input).traits;
   Port& to = declared(output);
   for (const auto& [key, value] : carried) to.traits.insert_or_assign(key, value);
+  offer_behind(input, output);
 }
 
 const Value* Declaration::trait(std::string_view input, std::string_view key) const {

@@ -22,8 +22,12 @@ std::string wrong_access(const Port& port) {
   const bool attachment = has(port.access, Access::color | Access::depth | Access::depth_test);
   if (port.is_buffer && (attachment || has(port.access, Access::sampled)))
     return "is a buffer with an image's access";
-  if (!port.is_buffer && has(port.access, Access::vertex | Access::indirect))
+  if (!port.is_buffer &&
+      has(port.access, Access::vertex | Access::indirect | Access::uniform | Access::host_write))
     return "is an image with a buffer's access";
+  if (has(port.access, Access::uniform) &&
+      (port.direction != Direction::in || port.access != Access::uniform))
+    return "is a uniform block that is not an input read as nothing else";
   if (port.omittable && (port.direction != Direction::out || !attachment))
     return "can be omitted, which only attachments can";
   if (reads_host_only(port.access) && port.direction != Direction::in) return "is written by nobody";

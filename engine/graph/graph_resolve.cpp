@@ -172,14 +172,15 @@ class Resolver {
   }
 
   // The shape of what is connected, for declare(); nothing when the source is in doubt.
-  void add_shape(const ResolvedNode& source, const std::string& port, const std::string& input,
-                 Declaration::Inputs& inputs) {
-    const Port* found = source.declaration.find(port);
+  void add_shape(const PortKey& source, const std::string& input, Declaration::Inputs& inputs) {
+    const Port* found = result_.nodes[source.node].declaration.find(source.port);
     if (!found) return;
     Declaration::Connected& connected = inputs[input];
     connected.traits = found->traits;
+    connected.behind = found->behind;
     if (found->is_buffer) {
       connected.buffer = found->buffer;
+      connected.node = source.node, connected.port = source.port;
     } else {
       connected.image = found->image;
     }
@@ -191,11 +192,11 @@ class Resolver {
     for (const auto& [port, source] : node.in) {
       const ResolvedNode& from = result_.nodes[source.node];
       node.sound = node.sound && from.sound;
-      add_shape(from, source.port, port, inputs);
+      add_shape(source, port, inputs);
     }
-    for (const auto& [port, source] : node.previous)
-      add_shape(result_.nodes[source.node], source.port, port, inputs);
+    for (const auto& [port, source] : node.previous) add_shape(source, port, inputs);
     run_declare(node, std::move(inputs));
+    connect_behind(node);
     if (!node.declaration.value_errors().empty() || !node.declaration.undeclared().empty())
       node.sound = false;
   }
@@ -228,7 +229,9 @@ class Resolver {
     for (const auto& [port, why] : node.declaration.source_errors()) refuse_source(node, port, why);
     for (const Port& port : node.declaration.ports()) {
       const bool input = port.direction == Direction::in || port.direction == Direction::inout;
-      if (input && !port.optional && !node.node->in.contains(port.name))
+      const bool by_itself = !port.beside.empty();
+      if (by_itself && !check_behind(result_, node, port, file_, problems_)) node.sound = false;
+      if (input && !by_itself && !port.optional && !node.node->in.contains(port.name))
         unsound(node, "required input '" + port.name + "' of '" + node.node->type + "' is not connected",
                 pointer_to(node.node->place, "in"));
     }
@@ -283,10 +286,16 @@ class Resolver {
     if (!port || port->direction == Direction::transient) {
       std::vector<std::string> names;
       for (const Port& p : node.declaration.ports())
-        if (p.direction == Direction::in || p.direction == Direction::inout) names.push_back(p.name);
+        if (p.beside.empty() && (p.direction == Direction::in || p.direction == Direction::inout))
+          names.push_back(p.name);
       return unsound(node, "unknown input " + in_quotes(name) + " of '" + node.node->type + "'", place,
                      did_you_mean(name, names));
     }
+    if (!port->beside.empty())
+      return unsound(node,
+                     "'" + name + "' of '" + node.node->type + "' is not connected here: it comes with '" +
+                         port->beside + "'",
+                     place);
     if (port->direction == Direction::out)
       return unsound(node, "'" + name + "' is an output of '" + node.node->type + "', not an input", place);
     check_source(node, *port, place);

@@ -60,6 +60,12 @@ ResolvedGraph resolve_graph(const Graph& graph, const Declaration::Setting& sett
 const Port* readable_port(const ResolvedNode& node, const std::string& port, const std::string& file,
                           const std::string& place, Problems& problems);
 
+// Connects inputs that stand behind other ones (Declaration::input_behind) to what those sources offer.
+void connect_behind(ResolvedNode& node);
+// Is the input `port`, which connects itself, connected where it has to be? A problem otherwise.
+bool check_behind(const ResolvedGraph& graph, const ResolvedNode& node, const Port& port,
+                  const std::string& file, Problems& problems);
+
 // What is wrong with a declaration in itself: accesses against directions, formats and shapes.
 void check_declaration(const ResolvedNode& node, const std::string& file, Problems& problems);
 

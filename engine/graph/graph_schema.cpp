@@ -64,6 +64,7 @@ json inputs_schema(const std::vector<Declaration>& variants) {
   for (const Declaration& declaration : variants)
     for (const Port& port : declaration.ports()) {
       if (port.direction != Direction::in && port.direction != Direction::inout) continue;
+      if (!port.beside.empty()) continue;
       ports[port.name] = {{"description", port.help}, {"$ref", "#/$defs/port"}};
       if (!port.optional) ++required_in[port.name];
     }

@@ -17,9 +17,10 @@
 
 namespace gnomon {
 
-struct SceneFacts;  // engine/light/scene_facts.h
-class Environment;  // engine/render/environment.h
-class Context;      // engine/render/context.h
+struct SceneFacts;     // engine/light/scene_facts.h
+class Environment;     // engine/render/environment.h
+class Context;         // engine/render/context.h
+enum class LightType;  // engine/scene/scene.h
 
 // How a pass touches a port. Flags: a buffer may be read in several ways by one pass.
 enum class Access : uint32_t {
@@ -33,16 +34,26 @@ enum class Access : uint32_t {
   indirect = 1 << 7,       // arguments of an indirect draw or dispatch
   transfer_read = 1 << 8,
   transfer_write = 1 << 9,
-  host_read = 1 << 10,  // output: mapped by the host when its segment is done. input, or a loop
-                        // controller's own output: what decide() reads
+  host_read = 1 << 10,   // output: mapped by the host when its segment is done. input, or a loop
+                         // controller's own output: what decide() reads
+  uniform = 1 << 11,     // input buffer read as a uniform block, all of it: small, and its loads are uniform
+  host_write = 1 << 12,  // output buffer that the pass maps and writes while it is recorded
 };
 constexpr Access operator|(Access a, Access b) { return Access(uint32_t(a) | uint32_t(b)); }
 constexpr bool has(Access set, Access one) { return (uint32_t(set) & uint32_t(one)) != 0; }
 constexpr bool writes(Access access) {
-  return has(access, Access::storage_write | Access::color | Access::depth | Access::transfer_write);
+  return has(access, Access::storage_write | Access::color | Access::depth | Access::transfer_write |
+                         Access::host_write);
 }
 
 enum class Direction { in, out, inout, transient };
+
+// A buffer that belongs to what an image shows, such as the views that the layers of a map are.
+struct Behind {
+  uint32_t node = 0;  // that makes it, by its index in the resolved graph
+  std::string port;
+  BufferShape shape;
+};
 
 struct Port {
   std::string name;
@@ -57,7 +68,11 @@ struct Port {
   // that count. Absent: anywhere.
   std::optional<uint32_t> reach;
   std::string reach_through;  // then the output that those texels are read for; empty: the map ends here
-  ImageShape image;           // of an input: that of the connected output
+  // What readers may ask for beside the port itself, by name (Declaration::input_behind); of an input: what
+  // its source offers.
+  std::map<std::string, Behind, std::less<>> behind;
+  std::string beside;  // of an input that is connected by itself: the input whose source offers it
+  ImageShape image;    // of an input: that of the connected output
   BufferShape buffer;
   Values traits;  // of an input: what its source says of itself; of an output: what this pass does
   std::string help;
@@ -96,16 +111,18 @@ class Declaration {
   // What declare() may depend on beside parameters and inputs; all of it known without a device.
   struct Setting {
     Extent viewport{1280, 720};
-    uint32_t lights = 1;  // lights of the scene; images per light have that many layers
-    uint32_t map_faces =
-        1;  // shadow-map layers: 1 for each spot or directional light, 6 for each point light
+    uint32_t lights = 1;                  // lights of the scene; images per light have that many layers
     uint64_t memory = uint64_t{1} << 30;  // bytes that a technique's shadow maps may take at a time
+    std::vector<LightType> light_types;   // of each light; empty: not known
   };
   // shapes and traits of the connected outputs, by input name; empty: nothing is connected (listing)
   struct Connected {
     std::optional<ImageShape> image;
     std::optional<BufferShape> buffer;
     Values traits = {};
+    std::map<std::string, Behind, std::less<>> behind;
+    uint32_t node = 0;  // the source
+    std::string port;
   };
   using Inputs = std::map<std::string, Connected, std::less<>>;
 
@@ -153,7 +170,7 @@ class Declaration {
   // what was filtered. The engine carries them and knows none of them.
   void set_trait(std::string_view output, std::string key, Value value);
   // What the source of an input says of itself is true of the output, too, but for what is set later. An
-  // inout has its source's traits by itself.
+  // inout has its source's traits by itself. So is what stands behind it (below).
   void carry_traits(std::string_view input, std::string_view output);
   // Of an input's source; nullptr: it says nothing of that, or nothing is connected.
   const Value* trait(std::string_view input, std::string_view key) const;
@@ -163,6 +180,15 @@ class Declaration {
   // A value that `input`'s source decides (spec.standard): the pass and its shaders see it as a parameter; a
   // graph file cannot set it.
   void derived(std::string_view input, ParamSpec spec);
+
+  // Readers of the image `output` may ask for what the buffer `input` of this pass is connected to, by that
+  // name; of an image `input`, for all that they may ask its source for.
+  void offer_behind(std::string_view input, std::string_view output);
+  // A buffer that the source of the input `beside` offers by this name. It is connected by itself; the second
+  // kind only where there is one.
+  BufferShape input_behind(std::string name, std::string_view beside, Access access, std::string help);
+  std::optional<BufferShape> optional_input_behind(std::string name, std::string_view beside, Access access,
+                                                   std::string help);
 
   // This pass darkens surfaces that no caster shades: with its own errors it stays even then.
   void darkens_lit_surfaces() { darkens_ = true; }
@@ -192,7 +218,9 @@ class Declaration {
   const std::vector<SourceError>& source_errors() const { return source_errors_; }
 
  private:
+  using Offers = std::map<std::string, Behind, std::less<>>;
   Setting setting_;
+  std::map<std::string, Offers, std::less<>> offers_;  // of outputs that may yet be declared
   Values given_, resolved_;
   Inputs inputs_;
   PassKind kind_ = PassKind::compute;

@@ -265,6 +265,7 @@ class Compiler {
     (resource.is_buffer ? resource.buffer_usage : resource.image_usage) |=
         resource.is_buffer ? buffer_usage_of(port.access) : image_usage_of(port.access);
     resource.host_visible = resource.host_visible || has(port.access, Access::host_read);
+    resource.host_written = resource.host_written || has(port.access, Access::host_write);
   }
 
   void name_results() {

@@ -35,6 +35,7 @@ struct Resource {
   VkImageUsageFlags image_usage = 0;
   VkBufferUsageFlags buffer_usage = 0;
   bool host_visible = false;  // read by the host
+  bool host_written = false;  // written by the host
   bool history = false;       // two copies, swapped every frame; never aliased
   bool kept = false;          // one copy, with what the frame before left in it; never aliased
   bool exported = false;      // graph output or capture: never aliased

@@ -50,7 +50,7 @@ class Heap {
 
   static bool in_heap_kind(const Resource& resource) {
     return !resource.exported && !resource.history && !resource.kept && !resource.host_visible &&
-           !resource.constant;
+           !resource.host_written && !resource.constant;
   }
 
  private:

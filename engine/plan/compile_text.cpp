@@ -40,6 +40,8 @@ constexpr Flag access_names[] = {
     {VK_ACCESS_2_TRANSFER_READ_BIT, "transfer_read"},
     {VK_ACCESS_2_TRANSFER_WRITE_BIT, "transfer_write"},
     {VK_ACCESS_2_HOST_READ_BIT, "host_read"},
+    {VK_ACCESS_2_HOST_WRITE_BIT, "host_write"},
+    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform_read"},
 };
 
 std::string flags_text(uint64_t bits, std::span<const Flag> names) {
@@ -184,6 +186,7 @@ class Writer {
     if (resource.history) text += ", history";
     if (resource.kept) text += ", kept";
     if (resource.host_visible) text += ", host visible";
+    if (resource.host_written) text += ", host written";
     if (resource.exported) text += ", exported";
     return text;
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
+#include "engine/light/view_set.h"
 #include "engine/plan/compile_parts.h"
 #include "engine/render/device_plan.h"
 #include "engine/render/gpu_scene.h"
@@ -63,6 +64,11 @@ const Physical& Context::physical(const std::string& port) const {
 const Params& Context::params() const { return node_.params; }
 ImageShape Context::shape(const std::string& port) const { return physical(port).image.shape(); }
 const Buffer& Context::buffer(const std::string& port) const { return physical(port).buffer; }
+
+const ViewSet& Context::views(const std::string& port) const { return views_of(node_, resources_, port); }
+void Context::publish(const std::string& port, ViewSet views) const {
+  *physical(port).views = std::move(views);
+}
 
 void Context::bind(const Pipeline& pipeline) {
   vkCmdBindPipeline(commands_, pipeline.bind_point, pipeline.handle);

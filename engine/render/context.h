@@ -21,6 +21,7 @@ class OcclusionQueries;  // engine/vulkan/occlusion_queries.h
 struct NodeState;        // engine/render/device_plan.h
 struct Physical;         // engine/render/device_plan.h
 struct PlanNode;         // engine/plan/compile.h
+struct ViewSet;          // engine/light/view_set.h
 
 class Context {
  public:
@@ -35,6 +36,8 @@ class Context {
   uint32_t iteration() const { return iteration_; }  // of the enclosing loop, from 0
   ImageShape shape(const std::string& port) const;
   const Buffer& buffer(const std::string& port) const;
+  const ViewSet& views(const std::string& port) const;  // as Environment has them
+  void publish(const std::string& port, ViewSet views) const;
 
   void bind(const Pipeline& pipeline);
   template <class T>

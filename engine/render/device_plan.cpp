@@ -19,7 +19,8 @@ Physical make_physical(const std::shared_ptr<Device>& device, const Resource& r,
         std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16);  // Vulkan has no empty buffers
     const VkBufferUsageFlags fill = r.history ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
     physical.buffer = Buffer(device, bytes, r.buffer_usage | fill,
-                             r.host_visible ? Place::host : Place::device, own_memory);
+                             r.host_visible || r.host_written ? Place::host : Place::device, own_memory);
+    physical.views = std::make_shared<ViewSet>();
   } else {
     const VkImageUsageFlags fill = r.constant || r.history ? VK_IMAGE_USAGE_TRANSFER_DST_BIT : 0;
     physical.image = GpuImage(device, r.image, r.image_usage | fill, own_memory);
@@ -49,6 +50,7 @@ VkMemoryBarrier2 memory_barrier(const Barrier& b) {
 }
 
 VkDescriptorType descriptor_type(const Port& port) {
+  if (has(port.access, Access::uniform)) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   if (port.is_buffer) return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   return has(port.access, Access::sampled) ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
                                            : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
@@ -61,6 +63,14 @@ const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& r
   const auto found = node.resources.find(port);
   if (found == node.resources.end()) fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
   return resources[found->second];
+}
+
+const ViewSet& views_of(const PlanNode& node, const std::vector<Physical>& resources,
+                        const std::string& port) {
+  const Physical& physical = physical_of(node, resources, port);
+  if (!physical.views || physical.views->views.empty())
+    fail(fmt::format("no views are known of '{}' of pass '{}'", port, node.id));
+  return *physical.views;
 }
 
 MemoryNeed device_need(const std::shared_ptr<Device>& device, const Resource& r) {
@@ -111,10 +121,12 @@ void DevicePlan::make_resources() {
 }
 
 void DevicePlan::make_nodes() {
-  uint32_t images = 1, storage_images = 1, buffers = 1;
+  uint32_t images = 1, storage_images = 1, buffers = 1, blocks = 0;
   for (const PlanNode& node : plan_.nodes)
     for (const ShaderPort& shown : shader_ports(node.declaration)) {
-      if (shown.port->is_buffer)
+      if (has(shown.port->access, Access::uniform))
+        ++blocks;
+      else if (shown.port->is_buffer)
         ++buffers;
       else if (has(shown.port->access, Access::sampled))
         ++images;
@@ -126,7 +138,7 @@ void DevicePlan::make_nodes() {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, copies * images},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copies * storage_images},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, copies * buffers},
-                                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count}};
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, copies * blocks + count}};
   VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   info.maxSets = count;
   info.poolSizeCount = uint32_t(std::size(sizes));
@@ -139,7 +151,7 @@ void DevicePlan::make_nodes() {
 void DevicePlan::make_node(uint32_t index) {
   const PlanNode& node = plan_.nodes[index];
   NodeState& state = nodes_[index];
-  state.preamble = light_kind_text(scene_.faces()) + preamble(node.declaration, node.constant_inputs);
+  state.preamble = light_kind_text(scene_.scene().lights) + preamble(node.declaration, node.constant_inputs);
   const auto shown = shader_ports(node.declaration);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const ShaderPort& s : shown)
@@ -196,6 +208,11 @@ void DevicePlan::write_set(const PlanNode& node, NodeState& state) {
     w.descriptorType = descriptor_type(*s.port);
     VkDescriptorImageInfo image{sampler_.get(), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED};
     VkDescriptorBufferInfo buffer{physical.buffer.handle(), 0, VK_WHOLE_SIZE};
+    const uint64_t most = device_->limits().maxUniformBufferRange;
+    if (has(s.port->access, Access::uniform) && physical.buffer.size() > most)
+      fail(fmt::format("'{}' has {} bytes, and '{}' reads at most {} as a uniform block", s.port->name,
+                       physical.buffer.size(), device_->info().name, most),
+           {}, node.id);
     if (s.port->is_buffer) {
       w.pBufferInfo = &buffer;
     } else {

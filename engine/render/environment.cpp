@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/format.h"
+#include "engine/light/view_set.h"
 #include "engine/plan/compile.h"
 #include "engine/render/device_plan.h"
 #include "engine/render/gpu_scene.h"
@@ -42,6 +43,11 @@ std::optional<uint32_t> Environment::reach(const std::string& output) const {
   const auto found = node_.reach.find(output);
   if (found == node_.reach.end()) fail(fmt::format("pass '{}' has no output '{}'", node_.id, output));
   return found->second;
+}
+
+const ViewSet& Environment::views(const std::string& port) const { return views_of(node_, resources_, port); }
+void Environment::publish(const std::string& port, ViewSet views) const {
+  *physical_of(node_, resources_, port).views = std::move(views);
 }
 
 Defines Environment::with_parameters(Defines defines) const {

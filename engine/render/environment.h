@@ -24,6 +24,7 @@ struct PlanNode;         // engine/plan/compile.h
 struct RenderSettings;   // engine/render/render_settings.h
 struct Scene;            // engine/scene/scene.h
 struct SceneFacts;       // engine/light/scene_facts.h
+struct ViewSet;          // engine/light/view_set.h
 
 class Environment {
  public:
@@ -42,6 +43,11 @@ class Environment {
   bool connected(const std::string& port) const;  // of an optional input, or an output that may be omitted
   // How far from receivers' places the texels of an output that is a shadow map are read; none: anywhere.
   std::optional<uint32_t> reach(const std::string& output) const;
+
+  // The views in a buffer port, as the host knows them: those of the frame that is recorded last, or, when
+  // they are made on the device, ones that hold all that those may. Known from when their maker is prepared.
+  const ViewSet& views(const std::string& port) const;
+  void publish(const std::string& port, ViewSet views) const;  // of an output of this pass
 
   // Pipelines of this pass: its bindings, its parameter block and flags are in the preamble of every shader.
   Pipeline compute(const std::string& file, Defines defines = {}) const;

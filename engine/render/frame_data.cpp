@@ -1,6 +1,6 @@
-// Fills the data that every shader sees: camera, lights and faces.
+// Fills the data that every shader sees: camera, lights and views.
 #include "engine/render/frame_data.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 
 #include <cmath>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -35,7 +35,7 @@ void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, gl
 }  // namespace
 
 FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
-                     bool reversed_z, uint32_t lights, uint32_t faces, uint32_t frame) {
+                     bool reversed_z, uint32_t lights, uint32_t frame) {
   const double aspect = camera.aspect.value_or(double(width) / height);
   const glm::dmat3 world_from_camera(camera.world_from_camera);
   const glm::dmat4 view = view_rotation(camera);
@@ -48,7 +48,7 @@ FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t widt
   data.ray_dy = glm::vec4(world_from_camera[1] * (-2.0 * half_height / height), 0.0);
   data.viewport = {float(width), float(height), 1.0f / float(width), 1.0f / float(height)};
   data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, 0.0f, 0.0f};
-  data.counts = {lights, faces, frame, 0};
+  data.counts = {lights, 0, frame, 0};
   const glm::dvec3 step(camera.world_from_camera[3] - previous.world_from_camera[3]);
   data.previous_clip_from_relative =
       glm::mat4(camera_projection(previous, previous.aspect.value_or(double(width) / height), reversed_z) *
@@ -56,8 +56,7 @@ FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t widt
   return data;
 }
 
-std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFace>& faces,
-                                  const glm::dvec3& eye) {
+std::vector<LightData> light_data(const Scene& scene, const glm::dvec3& eye) {
   std::vector<LightData> result;
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -69,25 +68,25 @@ std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFac
         glm::vec4(-glm::normalize(glm::dvec3(light.world_from_light[2])), light.range.value_or(0.0));
     data.intensity = glm::vec4(light.color * light.intensity, 0.0);
     data.cone = glm::vec4(std::cos(light.inner_cone), std::cos(light.outer_cone), 0.0, 0.0);
-    for (uint32_t f = 0; f < faces.size(); ++f) {
-      if (faces[f].light != i) continue;
-      if (data.faces.y++ == 0) data.faces.x = f;
-    }
     result.push_back(data);
   }
   return result;
 }
 
-std::vector<FaceData> face_data(const std::vector<LightFace>& faces, const glm::dvec3& eye) {
-  std::vector<FaceData> result;
-  for (const LightFace& face : faces) {
-    FaceData data{};
+std::vector<LightViewData> light_view_data(const std::vector<LightView>& views, const glm::dvec3& eye) {
+  std::vector<LightViewData> result;
+  for (const LightView& view : views) {
+    LightViewData data{};
     data.clip_from_relative =
-        glm::mat4(face.clip_from_light() * face.light_from_world * glm::translate(glm::dmat4(1.0), eye));
-    relative_rows(face.light_from_world, eye, data.rows);
-    data.range = glm::vec4(face.near, face.far, face.half_width, face.half_height);
-    data.info = {face.light, face.orthographic ? 1u : 0u, 0u, 0u};
+        glm::mat4(view.clip_from_light() * view.light_from_world * glm::translate(glm::dmat4(1.0), eye));
+    relative_rows(view.light_from_world, eye, data.rows);
+    data.range = glm::vec4(view.near, view.far, view.half_width, view.half_height);
+    data.info = {view.light, view.orthographic ? 1u : 0u, 0u, 0u};
     result.push_back(data);
+  }
+  for (uint32_t i = 0; i < views.size(); ++i) {
+    glm::uvec4& of_light = result[views[i].light].info;
+    if (of_light.w++ == 0) of_light.z = i;
   }
   return result;
 }

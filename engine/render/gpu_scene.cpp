@@ -9,7 +9,6 @@
 #include <glm/gtc/type_precision.hpp>
 
 #include "engine/base/error.h"
-#include "engine/light/light_face.h"
 #include "engine/scene/animation.h"
 #include "engine/vulkan/commands.h"
 
@@ -84,11 +83,6 @@ Handle<VkSampler> make_sampler(const std::shared_ptr<Device>& device, const Text
 
 bool is_mirrored(const glm::dmat4& transform) { return glm::determinant(glm::dmat3(transform)) < 0; }
 
-bool same(const LightFace& a, const LightFace& b) {
-  return a.light_from_world == b.light_from_world && a.half_width == b.half_width &&
-         a.half_height == b.half_height && a.near == b.near && a.far == b.far;
-}
-
 bool same(const FrameView& a, const FrameView& b) {
   return a.camera == b.camera && a.width == b.width && a.height == b.height && a.reversed_z == b.reversed_z;
 }
@@ -110,8 +104,6 @@ GpuScene::GpuScene(std::shared_ptr<Device> device, std::shared_ptr<const Scene> 
     : device_(std::move(device)),
       moving_(scene->animation ? std::make_shared<Scene>(*scene) : nullptr),
       scene_(moving_ ? moving_ : std::move(scene)),
-      fit_(*scene_, kFaceBorderPart, 1),
-      faces_(fit_.faces(*scene_)),
       lights_changed_(scene_->lights.size(), true) {
   upload_geometry();
   upload_textures();
@@ -166,16 +158,14 @@ void GpuScene::make_frame_set() {
   };
   frame_buffer_ = host(1, sizeof(FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   lights_ = host(scene_->lights.size(), sizeof(LightData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  faces_buffer_ = host(faces_.size(), sizeof(FaceData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   instances_ = host(scene_->instances.size(), sizeof(InstanceData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
 
-  const Buffer* buffers[] = {&frame_buffer_, &lights_,           &faces_buffer_, &instances_,
-                             &materials_,    &triangle_normals_, &positions_,    &indices_};
-  constexpr uint32_t kUniformBuffers = 3;  // frame, lights, faces; storage buffers follow
+  const Buffer* buffers[] = {&frame_buffer_,     &lights_,    &instances_, &materials_,
+                             &triangle_normals_, &positions_, &indices_};
+  constexpr uint32_t kUniformBuffers = 2;  // frame, lights; storage buffers follow
   const uint64_t most = device_->limits().maxUniformBufferRange;
-  if (lights_.size() > most || faces_buffer_.size() > most)
-    fail(fmt::format("{} lights with {} shadow-map faces are more than '{}' can hold", scene_->lights.size(),
-                     faces_.size(), device_->info().name),
+  if (lights_.size() > most)
+    fail(fmt::format("{} lights are more than '{}' can hold", scene_->lights.size(), device_->info().name),
          scene_->file.string());
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < std::size(buffers); ++i)
@@ -241,21 +231,12 @@ void GpuScene::pose(double seconds, bool first) {
   apply(pose, *moving_);
 }
 
-// The faces hold all casters, wherever they have gone.
-void GpuScene::fit_faces() {
-  const std::vector<LightFace> faces = fit_.faces(*scene_);
-  for (size_t i = 0; i < faces.size(); ++i)
-    if (!same(faces[i], faces_[i])) lights_changed_[faces[i].light] = true;
-  faces_ = faces;
-}
-
 void GpuScene::update(const FrameView& view, double seconds, uint32_t frame_index) {
   const bool first = frame_index == 0;
   pose(seconds, first);
   const auto any_light = [this] {
     return std::find(lights_changed_.begin(), lights_changed_.end(), true) != lights_changed_.end();
   };
-  if (moving_ && (casters_changed_ || any_light())) fit_faces();
 
   const Camera& camera = scene_->cameras.at(view.camera);
   const Camera& previous = first ? camera : camera_;
@@ -263,11 +244,10 @@ void GpuScene::update(const FrameView& view, double seconds, uint32_t frame_inde
   const bool eye_moved = first || eye != glm::dvec3(previous.world_from_camera[3]);
   camera_changed_ = first || camera.world_from_camera != previous.world_from_camera || !same(view, view_);
   frame_ = frame_data(camera, previous, view.width, view.height, view.reversed_z,
-                      uint32_t(scene_->lights.size()), uint32_t(faces_.size()), frame_index);
+                      uint32_t(scene_->lights.size()), frame_index);
   std::memcpy(frame_buffer_.bytes().data(), &frame_, sizeof(frame_));
   if (eye_moved || any_light()) {  // positions are relative to the eye
-    write(lights_, light_data(*scene_, faces_, eye));
-    write(faces_buffer_, face_data(faces_, eye));
+    write(lights_, light_data(*scene_, eye));
   }
   if (eye_moved || casters_changed_) write(instances_, instance_data(*scene_, first_triangle_, eye));
   camera_ = camera;

@@ -33,6 +33,7 @@ class DistancePenumbra : public Pass {
     d.number("bend", 0.25, 0, 1, "1", "further such distance, per distance between the two");
     d.inout("visibility", Access::storage_read | Access::storage_write, true,
             "in: hard shadow; out: 0 in umbra, 1 lit; a layer a light");
+    d.optional_input_behind("views", "visibility", Access::uniform, "what the shadow map's layers show");
   }
   void prepare(Environment& e) override {
     shade_ = e.compute("distance/distance_penumbra.glsl");

@@ -80,6 +80,7 @@ void declare_ports(Declaration& d) {
   d.cite("Cao et al. 2010; Meijster et al. 2000; Rong and Tan 2006; sites: Macedo 2018, ch. 4.2.2");
   const ImageShape source =
       d.input("source", Access::sampled, true, "the image that has the sites; a layer a light");
+  d.optional_input_behind("views", "source", Access::uniform, "what the shadow map's layers show");
   const bool depth =
       d.optional_input("depth", Access::sampled, false, "the camera's device depth").has_value();
   const bool geometric =

@@ -175,8 +175,8 @@ void read_basis(Declaration& d, const std::string& input) {
     derive(d, input, std::move(spec));
 }
 
-Defines moment_defines(const ImageShape& image, uint32_t faces) {
-  const Defines layers = {{"MOMENT_LAYERS", std::to_string(image.layers / faces)}};
+Defines moment_defines(const ImageShape& image, uint32_t views) {
+  const Defines layers = {{"MOMENT_LAYERS", std::to_string(image.layers / views)}};
   const auto with = [&](const char* type, const char* swizzle) {
     Defines all = layers;
     all.emplace_back("MOMENTS", type);

@@ -7,7 +7,7 @@
 
 namespace gnomon {
 
-// How an image of such a map is laid out: `layers` to a face of the light.
+// How an image of such a map is laid out: `layers` to a view of the light.
 struct MomentLayout {
   VkFormat format = VK_FORMAT_UNDEFINED;
   uint32_t layers = 1;
@@ -27,7 +27,7 @@ void read_basis(Declaration& d, const std::string& input);
 // average is no depth. True when averages are taken of logarithms.
 bool read_space(Declaration& d, const std::string& input);
 
-// GLSL type and swizzle of a texel of such an image, and its layers to a face.
-Defines moment_defines(const ImageShape& image, uint32_t faces);
+// GLSL type and swizzle of a texel of such an image, and its layers to a view.
+Defines moment_defines(const ImageShape& image, uint32_t views);
 
 }  // namespace gnomon

@@ -1,6 +1,6 @@
 // The pass moment_test: visibility from a pre-filtered shadow map.
 #include "engine/graph/pass.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
 #include "engine/scene/scene.h"
@@ -23,7 +23,7 @@ class MomentTest : public Pass {
     d.darkens_lit_surfaces();  // on slopes and next to anything that the kernel takes in
     const ImageShape visibility = declare_receiver(d);
     const ImageShape moments =
-        d.input("moments", Access::sampled, true, "the filtered basis; a face's layers follow each other");
+        d.input("moments", Access::sampled, true, "the filtered basis; a view's layers follow each other");
     d.reads_around("shadow_map", 1);
     if (moments.mips == 1) d.reads_around("moments", 2);
     read_basis(d, "moments");

@@ -4,7 +4,7 @@
 #include "engine/base/error.h"
 #include "engine/graph/pass.h"
 #include "engine/image/image.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
 #include "engine/render/render_settings.h"
@@ -19,6 +19,9 @@ class ImageSource : public Pass {
     d.darkens_lit_surfaces();  // whatever the scene casts
     d.summary("Shows an image that the program gives (RenderSettings::images), as if a pass had made it.");
     const bool mask = d.flag("mask", false, "1 where the image is not 0, in 8 bits a pixel");
+    d.optional_input_buffer("views", Access::uniform,
+                            "what the image shows, where it stands for a shadow map");
+    d.offer_behind("views", "value");
     d.output("value", Access::transfer_write, true,
              {d.setting().viewport, 1, 1, mask ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT},
              "the image's first channel");

@@ -1,8 +1,9 @@
 // Ports of everything that tests camera pixels against a shadow map.
 #include "passes/map/receiver_ports.h"
 #include "engine/graph/pass.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
+#include "engine/light/view_set.h"
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
 #include "engine/render/gpu_scene.h"
@@ -17,7 +18,9 @@ namespace gnomon {
 ImageShape declare_receiver(Declaration& d) {
   const ImageShape depth = d.input("depth", Access::sampled, false, "the camera's device depth");
   d.input("geometric", Access::sampled, false, "octahedral geometric normal");
-  d.input("shadow_map", Access::sampled, true, "depth from the light, a layer a face");
+  d.input("shadow_map", Access::sampled, true, "depth from the light, a layer a view");
+  d.input_behind("views", "shadow_map", Access::uniform, "what the map's layers show");
+  d.offer_behind("shadow_map", "visibility");
   read_depth_map(d, "shadow_map");
   return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
 }
@@ -29,18 +32,17 @@ int64_t declare_kernel(Declaration& d) {
 }
 
 void LightPipelines::prepare(Environment& e, const std::string& file, const Defines& defines) {
-  for (const Light& light : e.scene().lights) {
-    const bool point = light.type == LightType::point;
-    Pipeline& pipeline = point ? six_faces_ : one_face_;
+  for (const ViewSet::Range& views : e.views("views").of_light) {
+    Pipeline& pipeline = by_views_[views.count];
     if (pipeline.handle) continue;
     Defines all = defines;
-    if (point) all.emplace_back("SIX_FACES", "1");
+    all.emplace_back("LIGHT_VIEWS", std::to_string(views.count));
     pipeline = e.compute(file, all);
   }
 }
 
 const Pipeline& LightPipelines::of(const Context& c, uint32_t light) const {
-  return c.scene().scene().lights[light].type == LightType::point ? six_faces_ : one_face_;
+  return by_views_.at(c.views("views").of_light[light].count);
 }
 
 void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines) {
@@ -58,9 +60,7 @@ bool PerLight::shade_shadowless(Context& c, uint32_t light) const {
 }
 
 const Pipeline& PerLight::ready(Context& c, uint32_t light, std::array<uint32_t, 2> part) const {
-  const auto& faces = c.scene().faces();
-  uint32_t first = 0;
-  while (first < faces.size() && faces[first].light != light) ++first;
+  const uint32_t first = c.views("views").of_light[light].first;
   const Pipeline& pipeline = pipelines_.of(c, light);
   c.push(pipeline, std::array<uint32_t, 4>{light, first, part[0], part[1]});
   return pipeline;
@@ -83,12 +83,12 @@ void PerLight::dispatch_indirect(Context& c, uint32_t light, const std::string& 
 
 void report_bias(Environment& e) {
   const double size = e.shape("shadow_map").extent.width;
-  const auto& faces = e.gpu_scene().faces();
-  for (uint32_t i = 0; i < faces.size(); ++i) {
-    const LightFace& face = faces[i];
-    const double half = std::max(face.half_width, face.half_height);
-    const double texel = 2.0 * half * (face.orthographic ? 1.0 : 0.5 * (face.near + face.far)) / size;
-    const std::string suffix = faces.size() > 1 ? fmt::format(".face{}", i) : std::string();
+  const auto& views = e.views("views").views;
+  for (uint32_t i = 0; i < views.size(); ++i) {
+    const LightView& view = views[i];
+    const double half = std::max(view.half_width, view.half_height);
+    const double texel = 2.0 * half * (view.orthographic ? 1.0 : 0.5 * (view.near + view.far)) / size;
+    const std::string suffix = views.size() > 1 ? fmt::format(".view{}", i) : std::string();
     e.fact("texel_world" + suffix, texel);
     e.fact("bias_constant_world" + suffix, texel * e.params().number("bias_constant"));
     e.fact("bias_slope_world" + suffix, texel * e.params().number("bias_slope"));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <vector>
 
 #include "engine/graph/pass.h"
@@ -11,22 +12,23 @@
 
 namespace gnomon {
 
-// Inputs `depth`, `geometric`, `shadow_map`, whose source says `encoding`, `bias`, `bias_constant`,
-// `bias_slope`, `bias_normal` (map_traits.h). Returns the shape of a visibility image: one layer a light.
+// Inputs `depth`, `geometric`, `shadow_map` and, behind it, `views`; the map says `encoding`, `bias`,
+// `bias_constant`, `bias_slope`, `bias_normal` (map_traits.h). Returns the shape of a visibility image: one
+// layer a light.
 ImageShape declare_receiver(Declaration& d);
 
 // Parameter `kernel`: width of a filter in the shadow map, odd, in texels.
 int64_t declare_kernel(Declaration& d);
 
-// One compute shader in two forms: for lights of one face, and (SIX_FACES) for those whose pixels find
-// theirs.
+// One compute shader in a form for each number of views that a light may have (LIGHT_VIEWS): a pixel of a
+// light with several finds the one that shows it. The pass has the input `views`.
 class LightPipelines {
  public:
   void prepare(Environment& e, const std::string& file, const Defines& defines = {});
   const Pipeline& of(const Context& c, uint32_t light) const;
 
  private:
-  Pipeline one_face_, six_faces_;  // only those that the scene's lights need
+  std::map<uint32_t, Pipeline> by_views_;
 };
 
 // A compute shader that includes shadow_query.glsl, run for one light at a time.
@@ -51,7 +53,7 @@ class PerLight {
   Pipeline unshadowed_;           // only when some light is
 };
 
-// Puts the biases' size in world units into run.json, at the middle of each map face's depth range.
+// Puts the biases' size in world units into run.json, at the middle of each map view's depth range.
 void report_bias(Environment& e);
 
 }  // namespace gnomon

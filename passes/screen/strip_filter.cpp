@@ -63,6 +63,7 @@ void warn_about_width(Environment& e) {
 void StripFilter::declare(Declaration& d) const {
   const ImageShape shape = d.inout("visibility", Access::storage_read | Access::storage_write, true,
                                    "what is filtered; a layer a light");
+  d.optional_input_behind("views", "visibility", Access::uniform, "what the shadow map's layers show");
   d.input("depth", Access::sampled, false, "the camera's device depth");
   d.input("geometric", Access::sampled, false, "octahedral geometric normal");
   d.number(

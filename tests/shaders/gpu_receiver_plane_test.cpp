@@ -7,13 +7,13 @@
 #include <numbers>
 #include <random>
 
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "tests/shaders/gpu_kernel_helper.h"
 
 namespace gnomon::test {
 namespace {
 
-struct GpuFace {  // LightFace of lib/light_face.glsl
+struct GpuFace {  // LightView of lib/light_view.glsl
   glm::mat4 clip{1.0f};
   glm::vec4 rows[3]{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
   glm::vec4 range{0.5f, 50.0f, 0.8f, 0.8f};  // near, far, half width, half height
@@ -48,14 +48,14 @@ constexpr const char* kPlaneKernel = R"(
 layout(local_size_x = 64) in;
 struct Job { vec4 q, n; vec2 offset; float size, bias; uvec4 face_linear; };
 struct Answer { float depth, slope, z, base; vec2 texel, gradient; };
-layout(set = 0, binding = 0, std430) readonly buffer Faces { LightFace faces[]; };
+layout(set = 0, binding = 0, std430) readonly buffer Faces { LightView faces[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Jobs { Job jobs[]; };
 layout(set = 0, binding = 2, std430) writeonly buffer Answers { Answer answers[]; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= jobs.length()) return;
   Job job = jobs[i];
-  LightFace face = faces[job.face_linear.x];
+  LightView face = faces[job.face_linear.x];
   Receiver r = make_receiver(face, job.q.xyz, job.n.xyz, job.size);
   if (job.bias != 0.0) r = bias_receiver(face, r, job.bias);
   float depth = receiver_depth(face, r, r.texel + job.offset, job.face_linear.y != 0u);
@@ -236,15 +236,15 @@ TEST(GpuReceiverPlane, depth_is_at_most_that_of_an_empty_texel) {
 }
 
 constexpr const char* kDepthKernel = R"(
-#include "lib/light_face.glsl"
+#include "lib/light_view.glsl"
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 0, std430) readonly buffer Faces { LightFace faces[]; };
+layout(set = 0, binding = 0, std430) readonly buffer Faces { LightView faces[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Depths { vec2 depths[]; };  // face, z
 layout(set = 0, binding = 2, std430) writeonly buffer Answers { vec4 answers[]; };
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= depths.length()) return;
-  LightFace face = faces[int(depths[i].x)];
+  LightView face = faces[int(depths[i].x)];
   float z = depths[i].y;
   float a = encode_linear(face, z), b = encode_perspective(face, 1.0 / z);
   answers[i] = vec4(a, decode_linear(face, a), b, decode_perspective(face, b));

@@ -7,7 +7,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Bilinear, in full precision (hardware filters weigh in 1/256) and within the face.
+// Bilinear, in full precision (hardware filters weigh in 1/256) and within the view.
 vec4 bilinear(vec2 position, int layer, int level) {
 #ifdef MIP_MAPS
 #define READ(p) texelFetch(moments, ivec3(clamp(p, ivec2(0), last), layer), level)
@@ -28,13 +28,13 @@ vec4 bilinear(vec2 position, int layer, int level) {
 float footprint_level(ivec2 pixel, Query query) {
   float device_depth = depth_at(pixel).x;
   vec3 n = octahedral_decode(geometric_at(pixel).xy), p = relative_position(pixel, device_depth);
-  LightFace face = query.face;
+  LightView view = query.view;
   float size = map_size(), most = 1.0, least_facing = 1e-2 * length(p);
   for (int axis = 0; axis < 2; ++axis) {
     vec3 ray = p + view_depth(device_depth) * (axis == 0 ? frame.ray_dx.xyz : frame.ray_dy.xyz);
     float along = dot(n, p), facing = dot(n, ray);
     vec3 neighbour = ray * (abs(facing) > least_facing * 1e-2 ? along / facing : 1.0);
-    vec3 projected = face_project(face, face_space(face, vec4(neighbour, 1.0)));
+    vec3 projected = light_project(view, light_space(view, vec4(neighbour, 1.0)));
     float moved = distance(projected.xy * size, query.position);
     if (projected.z > 0.0) most = max(most, min(moved, size));
   }
@@ -58,12 +58,12 @@ vec4 filtered(Query query, int layer, float level) { return bilinear(query.posit
 // which moments cannot tell from occluders: `bias_kernel` moves the receiver towards the light by that part of what the plane
 // rises over half the kernel.
 float receiver_linear_depth(Query query, float level) {
-  LightFace face = query.face;
+  LightView view = query.view;
   Receiver plane = query.plane;
   float half_width = 0.5 * (float(params.kernel) * exp2(level) - 1.0);
-  float z = receiver_depth(face, plane, plane.texel, true);
-  vec2 outwards = half_width * sign(plane.gradient) * (is_orthographic(face) ? 1.0 : -1.0);
-  float farthest = receiver_depth(face, plane, plane.texel + outwards, true);
+  float z = receiver_depth(view, plane, plane.texel, true);
+  vec2 outwards = half_width * sign(plane.gradient) * (is_orthographic(view) ? 1.0 : -1.0);
+  float farthest = receiver_depth(view, plane, plane.texel + outwards, true);
   return clamp(z - params.bias_kernel * max(farthest - z, 0.0), 0.0, 1.0);
 }
 

@@ -1,12 +1,12 @@
 // The receiver as the shadow test sees it: the depth of its tangent plane at every texel of the map, bias included.
 // Pure functions.
 //
-// A plane is affine in map coordinates in 1/z for a perspective face and in z for an orthographic one, so the plane's
-// depth at a texel costs one multiply-add (and one reciprocal for linear depth in a perspective face).
+// A plane is affine in map coordinates in 1/z for a perspective view and in z for an orthographic one, so the plane's
+// depth at a texel costs one multiply-add (and one reciprocal for linear depth in a perspective view).
 #ifndef GNOMON_RECEIVER_PLANE
 #define GNOMON_RECEIVER_PLANE
 
-#include "light_face.glsl"
+#include "light_view.glsl"
 
 // Steepest slope that a plane is followed along, as a tangent: beyond, the plane is nearly edge-on to the light and one
 // texel covers more depth than any bias could (87 degrees).
@@ -16,19 +16,19 @@ struct Receiver {
   vec2 texel;     // position in the map, texels
   float base;     // plane value (1/z or z) at `texel`, biased
   vec2 gradient;  // of the plane value, per texel
-  float z;        // distance along the face's axis, world units
+  float z;        // distance along the view's axis, world units
   float slope;    // tangent of the angle between the plane and the map's texels
 };
 
-// `q`: point in the face's frame; `n`: unit geometric normal there, towards the light; `size`: texels a side.
-Receiver make_receiver(LightFace face, vec3 q, vec3 n, float size) {
-  vec3 projected = face_project(face, q);
+// `q`: point in the view's frame; `n`: unit geometric normal there, towards the light; `size`: texels a side.
+Receiver make_receiver(LightView view, vec3 q, vec3 n, float size) {
+  vec3 projected = light_project(view, q);
   Receiver r;
   r.texel = projected.xy * size;
   r.z = projected.z;
   // n . x = c with x = z * ray (perspective) or ray - z e_z (orthographic), ray affine in the map coordinates.
-  vec2 step = 2.0 * vec2(face.range.z, -face.range.w) / size;  // lateral units per texel
-  if (is_orthographic(face)) {
+  vec2 step = 2.0 * vec2(view.range.z, -view.range.w) / size;  // lateral units per texel
+  if (is_orthographic(view)) {
     // z = (n.xy . lateral - c) / n.z
     float facing = max(n.z, 1e-4);
     r.base = r.z;
@@ -48,9 +48,9 @@ Receiver make_receiver(LightFace face, vec3 q, vec3 n, float size) {
   return r;
 }
 
-// Moves the plane by `bias` world units towards the light, along the face's axis.
-Receiver bias_receiver(LightFace face, Receiver r, float bias) {
-  if (is_orthographic(face))
+// Moves the plane by `bias` world units towards the light, along the view's axis.
+Receiver bias_receiver(LightView view, Receiver r, float bias) {
+  if (is_orthographic(view))
     r.base -= bias;
   else
     r.base = 1.0 / max(r.z - bias, 1e-6 * r.z);
@@ -59,20 +59,20 @@ Receiver bias_receiver(LightFace face, Receiver r, float bias) {
 
 // Encoded depth of the plane at a position of the map, in texels; at most 1, as empty texels have it: a plane that runs
 // beyond the far distance between two texels is not in the shadow of nothing.
-float receiver_depth(LightFace face, Receiver r, vec2 at, bool linear) {
+float receiver_depth(LightView view, Receiver r, vec2 at, bool linear) {
   float value = r.base + dot(r.gradient, at - r.texel);
-  if (is_orthographic(face)) return min(encode_linear(face, value), 1.0);
+  if (is_orthographic(view)) return min(encode_linear(view, value), 1.0);
   // A plane that passes behind the light within the offset counts as infinitely far.
   value = max(value, 1.0 / (1e4 * r.z));
-  return min(linear ? encode_linear(face, 1.0 / value) : encode_perspective(face, value), 1.0);
+  return min(linear ? encode_linear(view, 1.0 / value) : encode_perspective(view, value), 1.0);
 }
 
 // The same at four positions, given by their coordinates.
-vec4 receiver_depths(LightFace face, Receiver r, vec4 x, vec4 y, bool linear) {
+vec4 receiver_depths(LightView view, Receiver r, vec4 x, vec4 y, bool linear) {
   vec4 value = r.base + r.gradient.x * (x - r.texel.x) + r.gradient.y * (y - r.texel.y);
-  if (is_orthographic(face)) return min(encode_linear(face, value), 1.0);
+  if (is_orthographic(view)) return min(encode_linear(view, value), 1.0);
   value = max(value, 1.0 / (1e4 * r.z));
-  return min(linear ? encode_linear(face, 1.0 / value) : encode_perspective(face, value), 1.0);
+  return min(linear ? encode_linear(view, 1.0 / value) : encode_perspective(view, value), 1.0);
 }
 
 #endif

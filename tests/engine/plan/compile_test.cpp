@@ -23,7 +23,7 @@ std::string file_with(const std::string& passes,
   return R"({"schema": 1, "name": "x", "passes": [)" + passes + R"(], "outputs": )" + outputs + "}";
 }
 
-constexpr Declaration::Setting tiny{{8, 8}, 1, 1};  // 256 bytes for one R32_SFLOAT image
+const Declaration::Setting tiny{{8, 8}, 1};  // 256 bytes for one R32_SFLOAT image
 
 SceneFacts facts_with(uint64_t triangles) {
   SceneFacts facts;

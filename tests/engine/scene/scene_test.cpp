@@ -1,7 +1,7 @@
 // Loading scenes: what is read, and every kind of broken file.
 #include "engine/scene/scene.h"
 #include "engine/base/resource_root.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
 
 #include <gtest/gtest.h>
@@ -337,7 +337,7 @@ TEST(SceneLoad, MutatedFilesNeverCrash) {
   const auto attempt = [&](const std::string& bytes) {
     try {
       const Scene scene = load_scene(folder.write("fuzz.glb", bytes));
-      for (const LightFace& face : light_faces(scene, 256, 4)) EXPECT_GT(face.near, 0.0);
+      for (const LightView& face : light_views(scene, 256, 4)) EXPECT_GT(face.near, 0.0);
       scene_facts(scene, scene.cameras[0], 1.0);
       ++loaded;
     } catch (const Error&) {

@@ -36,7 +36,7 @@ TEST(MapCache, KnownSamplesKeepTheirLayers) {
   EXPECT_EQ(missing(first), 3u);
   EXPECT_EQ(missing(again), 2u);
   EXPECT_EQ(again.layers[0], first.layers[1]);
-  EXPECT_EQ(missing(cache.place(1, places(0, 1))), 1u) << "another face";
+  EXPECT_EQ(missing(cache.place(1, places(0, 1))), 1u) << "another view";
 }
 
 TEST(MapCache, WhatFindsNoPlaceGoesToScratchAndIsRenderedAgain) {

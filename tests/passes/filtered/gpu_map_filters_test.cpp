@@ -5,7 +5,7 @@
 #include <random>
 
 #include "engine/graph/graph.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "tests/engine/truth/analytic_scenes.h"
 #include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
@@ -58,7 +58,8 @@ std::shared_ptr<const Image> depth_of(const VisibilityMap& map) {
 
 std::vector<float> filtered(const VisibilityMap& map, const std::string& type, const std::string& params) {
   const std::string graph = R"({ "schema": 1, "name": "test", "passes": [
-    { "id": "gbuffer", "type": "gbuffer" }, { "id": "map", "type": "image_source", "params": { "holds": "depth" } },
+    { "id": "gbuffer", "type": "gbuffer" }, { "id": "views", "type": "light_views" },
+    { "id": "map", "type": "image_source", "in": { "views": "views.views" }, "params": { "holds": "depth" } },
     { "id": "filter", "type": ")" +
                             type + R"(", "params": {)" + params + R"(},
       "in": { "depth": "gbuffer.depth", "geometric": "gbuffer.geometric", "shadow_map": "map.value" } } ],
@@ -80,7 +81,7 @@ std::vector<Place> places() {
     r.width = r.height = kSize;
     return ReferenceTracer(floor_scene()).trace(r);
   }();
-  const LightFace face = light_faces(floor_scene(), kSize, 0).front();
+  const LightView face = light_views(floor_scene(), kSize, 0).front();
   const glm::dvec3 eye(floor_scene().cameras[0].world_from_camera[3]);
   std::vector<Place> all;
   for (uint32_t i = 0; i < reference.depth.size(); ++i) {

@@ -1,4 +1,4 @@
-// Fits the projections of a light's faces to the scene.
+// Fits the projections of a light's views to the scene.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <span>
 
 #include "engine/base/error.h"
-#include "engine/light/light_face.h"
 #include "engine/light/light_fit.h"
+#include "engine/light/light_view.h"
 #include "engine/scene/area_light.h"
 #include "engine/scene/scene.h"
 
@@ -133,42 +133,42 @@ bool takes(Which which, const Instance& instance) {
   return which == Which::all || instance.moving == (which == Which::moving);
 }
 
-// `from`: nothing nearer to the face's apex counts.
-Range depths_inside(const Scene& scene, const LightFace& face, Which which, double from = 0) {
+// `from`: nothing nearer to the view's apex counts.
+Range depths_inside(const Scene& scene, const LightView& view, Which which, double from = 0) {
   const Frustum frustum =
-      perspective_frustum(face.half_width, face.half_height, from + smallest_depth * scene_size(scene));
+      perspective_frustum(view.half_width, view.half_height, from + smallest_depth * scene_size(scene));
   Range range;
   Transformed work;
   for (const Instance& instance : scene.instances)
     if (takes(which, instance))
-      add_mesh(scene.meshes[instance.mesh], face.light_from_world * instance.world_from_object, frustum, work,
+      add_mesh(scene.meshes[instance.mesh], view.light_from_world * instance.world_from_object, frustum, work,
                range);
   return range;
 }
 
-void set_perspective_range(LightFace& face, Range range, double size) {
+void set_perspective_range(LightView& view, Range range, double size) {
   if (range.empty()) range = {0.01 * size, size};  // nothing in sight: any valid range will do
-  face.far = range.hi * (1.0 + margin);
-  face.near = std::max(range.lo * (1.0 - margin), face.far * smallest_near);
+  view.far = range.hi * (1.0 + margin);
+  view.near = std::max(range.lo * (1.0 - margin), view.far * smallest_near);
 }
 
 }  // namespace
 
 // What one light sees of some of the scene's instances.
-struct FaceFit {
+struct ViewFit {
   Range depths;  // spot and point lights
   Bounds box;    // directional lights: along the light's axes, about the scene's centre at time 0
 };
 
 namespace {
 
-LightFace spot_face(const Scene& scene, uint32_t index) {
+LightView spot_view(const Scene& scene, uint32_t index) {
   const Light& light = scene.lights[index];
-  LightFace face;
-  face.light = index;
-  face.light_from_world = glm::inverse(light.world_from_light);
-  face.half_width = face.half_height = std::tan(0.5 * light.map_fov);
-  return face;
+  LightView view;
+  view.light = index;
+  view.light_from_world = glm::inverse(light.world_from_light);
+  view.half_width = view.half_height = std::tan(0.5 * light.map_fov);
+  return view;
 }
 
 // The light's axes at the scene's centre, so that far origins lose no digits: the position of a directional
@@ -193,29 +193,29 @@ Bounds box_along(const Scene& scene, const glm::dmat4& axes, Which which) {
 
 // Fitted to the vertices along the light's own axes: the map is centred on them and the nearest vertex is one
 // scene depth away.
-LightFace directional_face(const Scene& scene, uint32_t index, Bounds box) {
-  LightFace face;
-  face.light = index;
-  face.orthographic = true;
+LightView directional_view(const Scene& scene, uint32_t index, Bounds box) {
+  LightView view;
+  view.light = index;
+  view.orthographic = true;
   glm::dmat4 axes = centred_axes(scene, index);
   if (box.empty()) box.add(glm::dvec3(0.0));
   const double size = scene_size(scene);
   const double depth = std::max(box.max.z - box.min.z, 1e-3 * size);
   const glm::dvec3 centre = box.centre();
   axes[3] = axes * glm::dvec4(centre.x, centre.y, box.max.z + depth, 1.0);
-  face.light_from_world = glm::inverse(axes);
-  face.half_width = std::max(0.5 * (box.max.x - box.min.x) * (1.0 + margin), 1e-3 * size);
-  face.half_height = std::max(0.5 * (box.max.y - box.min.y) * (1.0 + margin), 1e-3 * size);
-  face.near = (1.0 - margin) * depth;
-  face.far = (1.0 + margin) * 2.0 * depth;
-  return face;
+  view.light_from_world = glm::inverse(axes);
+  view.half_width = std::max(0.5 * (box.max.x - box.min.x) * (1.0 + margin), 1e-3 * size);
+  view.half_height = std::max(0.5 * (box.max.y - box.min.y) * (1.0 + margin), 1e-3 * size);
+  view.near = (1.0 - margin) * depth;
+  view.far = (1.0 + margin) * 2.0 * depth;
+  return view;
 }
 
 struct Axes {
   glm::dvec3 forward, up;
 };
-// Layer order, and the direction that is up in each face: +y on the four sides; +z on +y and -z on -y, so
-// that the upper edge of each side face meets the y faces without a turn about the z axis.
+// Layer order, and the direction that is up in each face of the cube: +y on the four sides; +z on +y and -z
+// on -y, so that the upper edge of each side meets the y faces without a turn about the z axis.
 constexpr std::array<Axes, 6> cube_axes = {{{{1, 0, 0}, {0, 1, 0}},
                                             {{-1, 0, 0}, {0, 1, 0}},
                                             {{0, 1, 0}, {0, 0, 1}},
@@ -223,67 +223,67 @@ constexpr std::array<Axes, 6> cube_axes = {{{{1, 0, 0}, {0, 1, 0}},
                                             {{0, 0, 1}, {0, 1, 0}},
                                             {{0, 0, -1}, {0, 1, 0}}}};
 
-std::vector<LightFace> point_faces(const Scene& scene, uint32_t index, uint32_t map_size, uint32_t border) {
+std::vector<LightView> point_views(const Scene& scene, uint32_t index, uint32_t map_size, uint32_t border) {
   if (map_size <= 2 * static_cast<uint64_t>(border))
     fail("a border of " + std::to_string(border) + " texels leaves nothing of a map of " +
              std::to_string(map_size),
          {}, "light '" + scene.lights[index].name + "'", "use a larger shadow map");
   const double half = static_cast<double>(map_size) / (static_cast<double>(map_size) - 2.0 * border);
-  std::vector<LightFace> faces;
+  std::vector<LightView> views;
   for (const Axes& axes : cube_axes) {
     glm::dmat4 light_from_face(1.0);
     light_from_face[0] = glm::dvec4(glm::cross(axes.forward, axes.up), 0.0);
     light_from_face[1] = glm::dvec4(axes.up, 0.0);
     light_from_face[2] = glm::dvec4(-axes.forward, 0.0);
-    LightFace face;
-    face.light = index;
-    face.light_from_world = glm::inverse(scene.lights[index].world_from_light * light_from_face);
-    face.half_width = face.half_height = half;
-    faces.push_back(face);
+    LightView view;
+    view.light = index;
+    view.light_from_world = glm::inverse(scene.lights[index].world_from_light * light_from_face);
+    view.half_width = view.half_height = half;
+    views.push_back(view);
   }
-  return faces;
+  return views;
 }
 
-// Without their ranges; of a directional light none, as all of its face is fitted.
-std::vector<LightFace> unfitted_faces(const Scene& scene, uint32_t index, uint32_t map_size,
+// Without their ranges; of a directional light none, as all of its view is fitted.
+std::vector<LightView> unfitted_views(const Scene& scene, uint32_t index, uint32_t map_size,
                                       uint32_t border) {
   switch (scene.lights[index].type) {
     case LightType::spot:
-      return {spot_face(scene, index)};
+      return {spot_view(scene, index)};
     case LightType::point:
-      return point_faces(scene, index, map_size, border);
+      return point_views(scene, index, map_size, border);
     case LightType::directional:
       break;
   }
   return {};
 }
 
-FaceFit measure(const Scene& scene, uint32_t index, const std::vector<LightFace>& faces, Which which) {
-  FaceFit fit;
+ViewFit measure(const Scene& scene, uint32_t index, const std::vector<LightView>& views, Which which) {
+  ViewFit fit;
   if (scene.lights[index].type == LightType::directional)
     fit.box = box_along(scene, centred_axes(scene, index), which);
-  for (const LightFace& face : faces) fit.depths.add(depths_inside(scene, face, which));
+  for (const LightView& view : views) fit.depths.add(depths_inside(scene, view, which));
   return fit;
 }
 
-// One range for all faces of a light, so that depths can be compared across them. `still`: what was measured
+// One range for all views of a light, so that depths can be compared across them. `still`: what was measured
 // of the instances that stand still; nullptr: nothing.
-void add_faces(const Scene& scene, uint32_t index, uint32_t map_size, uint32_t border, const FaceFit* still,
-               std::vector<LightFace>& result) {
-  std::vector<LightFace> faces = unfitted_faces(scene, index, map_size, border);
-  FaceFit fit = measure(scene, index, faces, still != nullptr ? Which::moving : Which::all);
+void add_views(const Scene& scene, uint32_t index, uint32_t map_size, uint32_t border, const ViewFit* still,
+               std::vector<LightView>& result) {
+  std::vector<LightView> views = unfitted_views(scene, index, map_size, border);
+  ViewFit fit = measure(scene, index, views, still != nullptr ? Which::moving : Which::all);
   if (still != nullptr) {
     fit.depths.add(still->depths);
     if (!still->box.empty()) fit.box.add(still->box.min), fit.box.add(still->box.max);
   }
-  for (LightFace& face : faces) set_perspective_range(face, fit.depths, scene_size(scene));
-  if (faces.empty()) faces.push_back(directional_face(scene, index, fit.box));
-  result.insert(result.end(), faces.begin(), faces.end());
+  for (LightView& view : views) set_perspective_range(view, fit.depths, scene_size(scene));
+  if (views.empty()) views.push_back(directional_view(scene, index, fit.box));
+  result.insert(result.end(), views.begin(), views.end());
 }
 
 }  // namespace
 
-glm::dmat4 LightFace::clip_from_light() const {
+glm::dmat4 LightView::clip_from_light() const {
   glm::dmat4 clip(0.0);
   clip[0].x = 1.0 / half_width;
   clip[1].y = -1.0 / half_height;
@@ -299,49 +299,49 @@ glm::dmat4 LightFace::clip_from_light() const {
   return clip;
 }
 
-std::vector<LightFace> light_faces(const Scene& scene, uint32_t map_size, uint32_t border) {
-  std::vector<LightFace> faces;
-  for (uint32_t i = 0; i < scene.lights.size(); ++i) add_faces(scene, i, map_size, border, nullptr, faces);
-  return faces;
+std::vector<LightView> light_views(const Scene& scene, uint32_t map_size, uint32_t border) {
+  std::vector<LightView> views;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) add_views(scene, i, map_size, border, nullptr, views);
+  return views;
 }
 
 LightFit::LightFit(const Scene& scene, uint32_t map_size, uint32_t border)
     : map_size_(map_size), border_(border), still_(scene.lights.size()) {
   for (uint32_t i = 0; i < scene.lights.size(); ++i)
     if (!scene.lights[i].moving)
-      still_[i] = measure(scene, i, unfitted_faces(scene, i, map_size, border), Which::still);
+      still_[i] = measure(scene, i, unfitted_views(scene, i, map_size, border), Which::still);
 }
 LightFit::LightFit(LightFit&&) noexcept = default;
 LightFit& LightFit::operator=(LightFit&&) noexcept = default;
 LightFit::~LightFit() = default;
 
-std::vector<LightFace> LightFit::faces(const Scene& scene) const {
-  std::vector<LightFace> faces;
+std::vector<LightView> LightFit::views(const Scene& scene) const {
+  std::vector<LightView> views;
   for (uint32_t i = 0; i < scene.lights.size(); ++i)
-    add_faces(scene, i, map_size_, border_, scene.lights[i].moving ? nullptr : &still_[i], faces);
-  return faces;
+    add_views(scene, i, map_size_, border_, scene.lights[i].moving ? nullptr : &still_[i], views);
+  return views;
 }
 
 // Between light and receivers lies the hull of the light's rectangle and the frustum. The frustum from an
 // apex behind the light, which the rectangle just fits, holds it.
-AreaFace area_face(const Scene& scene, const LightFace& centre) {
+AreaView area_view(const Scene& scene, const LightView& centre) {
   const Light& light = scene.lights[centre.light];
   if (!shines_as_area(light)) return {centre, 0};
   const double x = 0.5 * light.area->width, y = 0.5 * light.area->height;
   const double back = std::max(x / centre.half_width, y / centre.half_height);
-  LightFace behind = centre;
+  LightView behind = centre;
   behind.light_from_world =
       glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -back)) * centre.light_from_world;
   Range depths = depths_inside(scene, behind, Which::all, back);
   depths.lo -= back, depths.hi -= back;
-  AreaFace result{centre, 0};
-  set_perspective_range(result.face, depths, scene_size(scene));
+  AreaView result{centre, 0};
+  set_perspective_range(result.view, depths, scene_size(scene));
   // Receivers at depth z lie within +-t z of the axis, seen from a sample at x within (+-t z - x) / z. Nearer
   // than the light's own size the window would only widen.
-  const double nearest = std::min(std::max(result.face.near, std::max(x, y)), result.face.far);
-  const double spread = 0.5 * (1.0 / nearest - 1.0 / result.face.far);
-  result.converge = 0.5 * (1.0 / nearest + 1.0 / result.face.far);
-  result.face.half_width += x * spread, result.face.half_height += y * spread;
+  const double nearest = std::min(std::max(result.view.near, std::max(x, y)), result.view.far);
+  const double spread = 0.5 * (1.0 / nearest - 1.0 / result.view.far);
+  result.converge = 0.5 * (1.0 / nearest + 1.0 / result.view.far);
+  result.view.half_width += x * spread, result.view.half_height += y * spread;
   return result;
 }
 

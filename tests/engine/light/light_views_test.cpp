@@ -1,11 +1,11 @@
-// Projections of a light's faces: what they hold, and their near and far planes.
+// Projections of a light's views: what they hold, and their near and far planes.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "engine/base/error.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
 #include "engine/scene/scene.h"
 
@@ -52,8 +52,8 @@ Light down(LightType type, double height) {
   return light;
 }
 
-glm::dvec3 ndc(const LightFace& face, const glm::dvec3& light_space) {
-  const glm::dvec4 clip = face.clip_from_light() * glm::dvec4(light_space, 1.0);
+glm::dvec3 ndc(const LightView& view, const glm::dvec3& light_space) {
+  const glm::dvec4 clip = view.clip_from_light() * glm::dvec4(light_space, 1.0);
   return glm::dvec3(clip) / clip.w;
 }
 
@@ -61,47 +61,47 @@ void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
 }
 
-TEST(LightFaces, PerspectiveCornersMapToClipCorners) {
+TEST(LightViews, PerspectiveCornersMapToClipCorners) {
   Light light = down(LightType::spot, 10);
   light.map_fov = pi / 3;
-  const LightFace face = light_faces(scene_of({floor_at(0, 4), floor_at(3, 1)}, light), 512, 4)[0];
+  const LightView view = light_views(scene_of({floor_at(0, 4), floor_at(3, 1)}, light), 512, 4)[0];
   const double t = std::tan(pi / 6);
-  EXPECT_DOUBLE_EQ(face.half_width, t);
-  EXPECT_NEAR(face.near, 7 * 0.99, 1e-12);
-  EXPECT_NEAR(face.far, 10 * 1.01, 1e-12);
-  expect_near(ndc(face, {t * face.near, t * face.near, -face.near}),
+  EXPECT_DOUBLE_EQ(view.half_width, t);
+  EXPECT_NEAR(view.near, 7 * 0.99, 1e-12);
+  EXPECT_NEAR(view.far, 10 * 1.01, 1e-12);
+  expect_near(ndc(view, {t * view.near, t * view.near, -view.near}),
               {1, -1, 0});  // up in light space is -y in clip
-  expect_near(ndc(face, {-t * face.far, -t * face.far, -face.far}), {-1, 1, 1});
+  expect_near(ndc(view, {-t * view.far, -t * view.far, -view.far}), {-1, 1, 1});
   const double d = 8;  // in between: far (d - near) / (d (far - near))
-  expect_near(ndc(face, {0, 0, -d}), {0, 0, face.far * (d - face.near) / (d * (face.far - face.near))});
+  expect_near(ndc(view, {0, 0, -d}), {0, 0, view.far * (d - view.near) / (d * (view.far - view.near))});
 }
 
 // Both triangles of the floor have every vertex outside the frustum; what the frustum holds of them counts.
-TEST(LightFaces, LargeTrianglesAreFittedByTheirPartInside) {
+TEST(LightViews, LargeTrianglesAreFittedByTheirPartInside) {
   Light light = down(LightType::spot, 10);
   light.map_fov = pi / 2;
   Mesh slope = quad({-100, -100, 100}, {100, 100, 100}, {100, 100, -100}, {-100, -100, -100});  // y = x
-  const LightFace face = light_faces(scene_of({slope}, light), 512, 4)[0];
+  const LightView view = light_views(scene_of({slope}, light), 512, 4)[0];
   // Inside |x| <= 10 - y: the plane y = x reaches from x = 5 (depth 5) down to where -x = 10 - x has no
   // solution but the mesh's edge at x = -100 (depth 110).
-  EXPECT_NEAR(face.near, 5 * 0.99, 1e-9);
-  EXPECT_NEAR(face.far, 110 * 1.01, 1e-9);
+  EXPECT_NEAR(view.near, 5 * 0.99, 1e-9);
+  EXPECT_NEAR(view.far, 110 * 1.01, 1e-9);
 }
 
-TEST(LightFaces, OrthographicIsFittedToVertices) {
+TEST(LightViews, OrthographicIsFittedToVertices) {
   const Scene scene = scene_of({floor_at(0, 4), floor_at(3, 1)}, down(LightType::directional, -50));
-  const std::vector<LightFace> faces = light_faces(scene, 512, 4);
-  ASSERT_EQ(faces.size(), 1u);
-  const LightFace& face = faces[0];
-  EXPECT_TRUE(face.orthographic);
-  EXPECT_NEAR(face.half_width, 4 * 1.01, 1e-12);
-  EXPECT_NEAR(face.half_height, 4 * 1.01, 1e-12);
-  EXPECT_GT(face.near, 0);
-  expect_near(ndc(face, {face.half_width, face.half_height, -face.near}), {1, -1, 0});
-  expect_near(ndc(face, {-face.half_width, -face.half_height, -face.far}), {-1, 1, 1});
+  const std::vector<LightView> views = light_views(scene, 512, 4);
+  ASSERT_EQ(views.size(), 1u);
+  const LightView& view = views[0];
+  EXPECT_TRUE(view.orthographic);
+  EXPECT_NEAR(view.half_width, 4 * 1.01, 1e-12);
+  EXPECT_NEAR(view.half_height, 4 * 1.01, 1e-12);
+  EXPECT_GT(view.near, 0);
+  expect_near(ndc(view, {view.half_width, view.half_height, -view.near}), {1, -1, 0});
+  expect_near(ndc(view, {-view.half_width, -view.half_height, -view.far}), {-1, 1, 1});
   for (const Mesh& mesh : scene.meshes) {
     for (const glm::vec3& p : mesh.positions) {
-      const glm::dvec3 q = ndc(face, glm::dvec3(face.light_from_world * glm::dvec4(glm::dvec3(p), 1.0)));
+      const glm::dvec3 q = ndc(view, glm::dvec3(view.light_from_world * glm::dvec4(glm::dvec3(p), 1.0)));
       EXPECT_LT(std::max(std::abs(q.x), std::abs(q.y)), 1.0);
       EXPECT_GT(q.z, 0.0);
       EXPECT_LT(q.z, 1.0);
@@ -109,93 +109,93 @@ TEST(LightFaces, OrthographicIsFittedToVertices) {
   }
   // Depth grows away from the light.
   const auto depth = [&](double y) {
-    return ndc(face, glm::dvec3(face.light_from_world * glm::dvec4(0, y, 0, 1))).z;
+    return ndc(view, glm::dvec3(view.light_from_world * glm::dvec4(0, y, 0, 1))).z;
   };
   EXPECT_LT(depth(3), depth(0));
 }
 
-TEST(LightFaces, OrthographicFitUsesVerticesNotBoxes) {
+TEST(LightViews, OrthographicFitUsesVerticesNotBoxes) {
   // A thin diagonal quad: its box, turned into light axes, would be larger.
   Mesh diagonal = quad({-1, 0, 1}, {1, 0, -1}, {1, 0.1f, -1}, {-1, 0.1f, 1});
   Light light = down(LightType::directional, 5);
   const double c = std::sqrt(0.5);
   light.world_from_light[0] = glm::dvec4(c, 0, c, 0);
   light.world_from_light[1] = glm::dvec4(c, 0, -c, 0);
-  const LightFace face = light_faces(scene_of({diagonal}, light), 512, 0)[0];
-  EXPECT_NEAR(face.half_height, std::sqrt(2.0) * 1.01, 1e-6);
-  EXPECT_LT(face.half_width, 0.01);
-  EXPECT_GT(face.half_width, 0.0);
+  const LightView view = light_views(scene_of({diagonal}, light), 512, 0)[0];
+  EXPECT_NEAR(view.half_height, std::sqrt(2.0) * 1.01, 1e-6);
+  EXPECT_LT(view.half_width, 0.01);
+  EXPECT_GT(view.half_width, 0.0);
 }
 
-TEST(LightFaces, PointFacesCoverAllDirectionsWithTheirBorder) {
+TEST(LightViews, PointFacesCoverAllDirectionsWithTheirBorder) {
   Light light = down(LightType::point, 2);
   const uint32_t size = 256, border = 8;
-  const std::vector<LightFace> faces =
-      light_faces(scene_of({floor_at(-3, 5), floor_at(6, 5)}, light), size, border);
-  ASSERT_EQ(faces.size(), 6u);
+  const std::vector<LightView> views =
+      light_views(scene_of({floor_at(-3, 5), floor_at(6, 5)}, light), size, border);
+  ASSERT_EQ(views.size(), 6u);
   const glm::dvec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (size_t i = 0; i < 6; ++i) {
-    EXPECT_NEAR(faces[i].half_width, 256.0 / 240.0, 1e-15);
-    EXPECT_EQ(faces[i].near, faces[0].near);
-    EXPECT_EQ(faces[i].far, faces[0].far);
-    EXPECT_NEAR(glm::determinant(glm::dmat3(faces[i].light_from_world)), 1.0, 1e-12);
+    EXPECT_NEAR(views[i].half_width, 256.0 / 240.0, 1e-15);
+    EXPECT_EQ(views[i].near, views[0].near);
+    EXPECT_EQ(views[i].far, views[0].far);
+    EXPECT_NEAR(glm::determinant(glm::dmat3(views[i].light_from_world)), 1.0, 1e-12);
     const glm::dvec4 axis = light.world_from_light * glm::dvec4(axes[i], 0.0);
-    expect_near(glm::dvec3(faces[i].light_from_world * axis), {0, 0, -1});
+    expect_near(glm::dvec3(views[i].light_from_world * axis), {0, 0, -1});
   }
   // A direction at 45 degrees is `border` texels from the map's edge: (1 - ndc) / 2 * size = border.
-  expect_near(ndc(faces[0], {1, 1, -1}), {240.0 / 256, -240.0 / 256, ndc(faces[0], {0, 0, -1}).z});
-  // Every direction is inside exactly one face's 90 degrees.
+  expect_near(ndc(views[0], {1, 1, -1}), {240.0 / 256, -240.0 / 256, ndc(views[0], {0, 0, -1}).z});
+  // Every direction is inside exactly one view's 90 degrees.
   for (int k = 0; k < 500; ++k) {
     const double z = -1 + 2 * (k + 0.5) / 500, a = 2.399963 * k, r = std::sqrt(1 - z * z);
     int holders = 0;
-    for (const LightFace& face : faces) {
-      const glm::dvec3 d(face.light_from_world * glm::dvec4(r * std::cos(a), r * std::sin(a), z, 0.0));
+    for (const LightView& view : views) {
+      const glm::dvec3 d(view.light_from_world * glm::dvec4(r * std::cos(a), r * std::sin(a), z, 0.0));
       holders += -d.z > std::max(std::abs(d.x), std::abs(d.y));
     }
     EXPECT_EQ(holders, 1);
   }
 }
 
-// Nearest surface straight below at 4 along the face's axis, farthest vertex 5 (max norm).
-TEST(LightFaces, PointRangeIsCommonAndUsesDepthAlongTheAxis) {
-  const std::vector<LightFace> faces =
-      light_faces(scene_of({floor_at(0, 5)}, down(LightType::point, 4)), 256, 0);
-  EXPECT_NEAR(faces[0].near, 4 * 0.99, 1e-9);
-  EXPECT_NEAR(faces[0].far, 5 * 1.01, 1e-9);
+// Nearest surface straight below at 4 along the view's axis, farthest vertex 5 (max norm).
+TEST(LightViews, PointRangeIsCommonAndUsesDepthAlongTheAxis) {
+  const std::vector<LightView> views =
+      light_views(scene_of({floor_at(0, 5)}, down(LightType::point, 4)), 256, 0);
+  EXPECT_NEAR(views[0].near, 4 * 0.99, 1e-9);
+  EXPECT_NEAR(views[0].far, 5 * 1.01, 1e-9);
 }
 
-TEST(LightFaces, BorderThatLeavesNothingIsAnError) {
+TEST(LightViews, BorderThatLeavesNothingIsAnError) {
   const Scene scene = scene_of({floor_at(0, 5)}, down(LightType::point, 4));
-  EXPECT_THROW(light_faces(scene, 16, 8), Error);
-  EXPECT_EQ(light_faces(scene, 17, 8).size(), 6u);
+  EXPECT_THROW(light_views(scene, 16, 8), Error);
+  EXPECT_EQ(light_views(scene, 17, 8).size(), 6u);
 }
 
-TEST(LightFaces, RangesAreValidWhateverTheLightSees) {
+TEST(LightViews, RangesAreValidWhateverTheLightSees) {
   for (const double height : {-5.0, 0.0, 1e-7, 2.0, 1e6}) {
     for (const LightType type : {LightType::spot, LightType::point, LightType::directional}) {
-      for (const LightFace& face :
-           light_faces(scene_of({floor_at(0, 4), floor_at(3, 1)}, down(type, height)), 128, 4)) {
-        EXPECT_GT(face.near, 0.0) << height;
-        EXPECT_GE(face.near, 0.99e-6 * face.far);
-        EXPECT_GT(face.far, face.near) << height;
-        EXPECT_TRUE(std::isfinite(face.far));
-        EXPECT_GT(face.half_width, 0.0);
-        EXPECT_GT(face.half_height, 0.0);
+      for (const LightView& view :
+           light_views(scene_of({floor_at(0, 4), floor_at(3, 1)}, down(type, height)), 128, 4)) {
+        EXPECT_GT(view.near, 0.0) << height;
+        EXPECT_GE(view.near, 0.99e-6 * view.far);
+        EXPECT_GT(view.far, view.near) << height;
+        EXPECT_TRUE(std::isfinite(view.far));
+        EXPECT_GT(view.half_width, 0.0);
+        EXPECT_GT(view.half_height, 0.0);
       }
     }
   }
 }
 
-TEST(LightFaces, FarOriginGivesTheSameFit) {
+TEST(LightViews, FarOriginGivesTheSameFit) {
   for (const LightType type : {LightType::spot, LightType::point, LightType::directional}) {
     Scene scene = scene_of({floor_at(0, 4), floor_at(3, 1)}, down(type, 10));
-    const std::vector<LightFace> here = light_faces(scene, 128, 4);
+    const std::vector<LightView> here = light_views(scene, 128, 4);
     const glm::dvec4 offset(6.4e6, -3e6, 1e6, 0);
     for (Instance& instance : scene.instances) instance.world_from_object[3] += offset;
     scene.lights[0].world_from_light[3] += offset;
     scene.bounds.min += glm::dvec3(offset);
     scene.bounds.max += glm::dvec3(offset);
-    const std::vector<LightFace> there = light_faces(scene, 128, 4);
+    const std::vector<LightView> there = light_views(scene, 128, 4);
     for (size_t i = 0; i < here.size(); ++i) {
       EXPECT_NEAR(here[i].near, there[i].near, 1e-7);
       EXPECT_NEAR(here[i].far, there[i].far, 1e-7);
