@@ -59,11 +59,11 @@ TEST(WithoutShadows, OnlyOfGraphsThatHaveWhatItTakes) {
 TEST(LeftOutOfThePlan, ATechniqueWhoseShadowsNobodySees) {
   const Plan plan = plan_of("edtsm", {}, facts("far away"));
   EXPECT_EQ(ids_of(plan), (std::vector<std::string>{"gbuffer", "shade"}));
-  ASSERT_EQ(plan.left_out.size(), 5u);
+  ASSERT_EQ(plan.left_out.size(), 6u);
   for (const LeftOut& pass : plan.left_out) EXPECT_EQ(pass.reason, "far away");
   CompileOptions keep;
   keep.keep_all = true;
-  EXPECT_EQ(plan_of("edtsm", {}, facts("far away"), keep).nodes.size(), 7u);
+  EXPECT_EQ(plan_of("edtsm", {}, facts("far away"), keep).nodes.size(), 8u);
 }
 
 // What is captured runs all the same, and nothing else does.
@@ -71,7 +71,7 @@ TEST(LeftOutOfThePlan, NotWhatIsCaptured) {
   CompileOptions options;
   options.captures = {"map.depth"};
   EXPECT_EQ(ids_of(plan_of("edtsm", {}, facts("far away"), options)),
-            (std::vector<std::string>{"gbuffer", "map", "shade"}));
+            (std::vector<std::string>{"gbuffer", "views", "map", "shade"}));
 }
 
 // Moments darken slopes by themselves; that a light shines elsewhere is no error of theirs.

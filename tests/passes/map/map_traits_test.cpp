@@ -46,15 +46,16 @@ TEST(MapTraits, MomentsSayTheirBasisAndTheFilterItsKernel) {
 
 struct Wrong {
   const char* name;
-  const char* passes;               // after the G-buffer and two maps
+  const char* passes;               // after the G-buffer, the views and two maps
   std::vector<const char*> pieces;  // of the message
 };
 
 std::string error_of(const Wrong& wrong) {
   const std::string text =
       R"({ "schema": 1, "name": "wrong", "passes": [ { "id": "gbuffer", "type": "gbuffer" },
-    { "id": "map", "type": "shadow_map" },
-    { "id": "other", "type": "shadow_map", "params": { "encoding": "linear" } },
+    { "id": "views", "type": "light_views" },
+    { "id": "map", "type": "shadow_map", "in": { "views": "views.views" } },
+    { "id": "other", "type": "shadow_map", "in": { "views": "views.views" }, "params": { "encoding": "linear" } },
     { "id": "moments", "type": "shadow_moments", "in": { "shadow_map": "map.depth" } },)" +
       std::string(wrong.passes) + R"(], "outputs": { "result": "end.)" +
       (std::string(wrong.name) == "filter" ? "result" : "visibility") + R"(" } })";
@@ -71,8 +72,8 @@ TEST(MapTraits, WrongCombinationsAreErrorsThatNameBothNodes) {
       {"moment test",
        R"({ "id": "end", "type": "moment_test", "in": { "depth": "gbuffer.depth",
          "geometric": "gbuffer.geometric", "shadow_map": "map.depth", "moments": "map.depth" } })",
-       {"/passes/4/in/moments", "'end' (moment_test) cannot read 'depth' of 'map' (shadow_map)",
-        "holds depth, and not a transform of it", "'map' is at /passes/1"}},
+       {"/passes/5/in/moments", "'end' (moment_test) cannot read 'depth' of 'map' (shadow_map)",
+        "holds depth, and not a transform of it", "'map' is at /passes/2"}},
       {"another map",
        R"({ "id": "end", "type": "moment_test", "in": { "depth": "gbuffer.depth",
          "geometric": "gbuffer.geometric", "shadow_map": "other.depth", "moments": "moments.moments" } })",
@@ -81,7 +82,7 @@ TEST(MapTraits, WrongCombinationsAreErrorsThatNameBothNodes) {
       {"hard test of moments",
        R"({ "id": "end", "type": "shadow_test", "in": { "depth": "gbuffer.depth",
          "geometric": "gbuffer.geometric", "shadow_map": "moments.moments" } })",
-       {"/passes/4/in/shadow_map", "'end' (shadow_test) cannot read 'moments' of 'moments' (shadow_moments)",
+       {"/passes/5/in/shadow_map", "'end' (shadow_test) cannot read 'moments' of 'moments' (shadow_moments)",
         "not depth"}},
       {"no map",
        R"({ "id": "end", "type": "pcf", "in": { "depth": "gbuffer.depth",
