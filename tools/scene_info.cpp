@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "engine/scene/animation.h"
+#include "engine/scene/area_light.h"
 
 namespace gnomon {
 namespace {
@@ -86,7 +87,13 @@ void describe_lights(const Scene& scene, Out out) {
     if (light.type == LightType::spot)
       fmt::format_to(out, ", cone {:.4g} to {:.4g} degrees, map {:.4g} degrees", degrees(light.inner_cone),
                      degrees(light.outer_cone), degrees(light.map_fov));
-    if (light.area) fmt::format_to(out, ", area: {}", text(*light.area, scene));
+    if (has_size(light)) {
+      const std::string size =
+          light.type == LightType::directional
+              ? fmt::format("angular diameter {:.6g} degrees", degrees(angular_diameter(*light.area)))
+              : "area: " + text(*light.area, scene);
+      fmt::format_to(out, ", {}", size);
+    }
     fmt::format_to(out, "\n");
   }
 }

@@ -6,6 +6,8 @@
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "engine/scene/area_light.h"
+
 namespace gnomon {
 namespace {
 
@@ -23,6 +25,14 @@ glm::dmat4 camera_projection(const Camera& camera, double aspect, bool reversed_
 
 glm::dmat4 view_rotation(const Camera& camera) {
   return glm::dmat4(glm::transpose(glm::dmat3(camera.world_from_camera)));
+}
+
+glm::vec4 light_size(const Light& light) {
+  if (!has_size(light)) return glm::vec4(0.0f);
+  const AreaLight& area = *light.area;
+  const auto shape = double(area.shape);
+  if (light.type == LightType::directional) return {0.0, 0.0, shape, 0.5 * area.width};
+  return {0.5 * area.width, 0.5 * area.height, shape, 0.0};
 }
 
 // Rows of a rigid light_from_world, for positions relative to `eye`. Subtracted in double: exact at far
@@ -68,6 +78,7 @@ std::vector<LightData> light_data(const Scene& scene, const glm::dvec3& eye) {
         glm::vec4(-glm::normalize(glm::dvec3(light.world_from_light[2])), light.range.value_or(0.0));
     data.intensity = glm::vec4(light.color * light.intensity, 0.0);
     data.cone = glm::vec4(std::cos(light.inner_cone), std::cos(light.outer_cone), 0.0, 0.0);
+    data.size = light_size(light);
     result.push_back(data);
   }
   return result;

@@ -26,6 +26,9 @@ struct LightData {
   glm::vec4 direction;  // unit, the way it shines; w: range in world units, 0 = unlimited
   glm::vec4 intensity;  // linear RGB, candela or lux
   glm::vec4 cone;       // cosines of the inner and outer half angle
+  // Half width and half height of its area, world units; its AreaLight::Shape; of a directional light the
+  // tangent of half its angular diameter. All 0 without a size.
+  glm::vec4 size;
 };
 
 struct LightViewData {

@@ -152,7 +152,7 @@ void check_buffers(const Json& document, const std::string& file, SceneWarnings&
 }
 
 void check_extensions(const Json& document, const std::string& file, SceneWarnings& warnings) {
-  constexpr std::array supported = {"KHR_lights_punctual", "KHR_mesh_quantization"};
+  constexpr std::array supported = {"EXT_lights_area", "KHR_lights_punctual", "KHR_mesh_quantization"};
   constexpr std::array unreadable = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                      "KHR_texture_basisu", "EXT_texture_webp"};
   const Json& required_names = document.value("extensionsRequired", Json::array());

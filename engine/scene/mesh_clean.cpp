@@ -65,6 +65,17 @@ std::vector<uint32_t> weld(const std::vector<glm::vec3>& positions) {
   return id;
 }
 
+// Moeller and Trumbore 1997, one-sided in t; the ray's direction is fixed and matches no axis.
+bool crosses(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& a, const glm::dvec3& b,
+             const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a, ac = c - a, p = glm::cross(direction, ac);
+  const double determinant = glm::dot(ab, p);
+  if (determinant == 0.0) return false;
+  const glm::dvec3 s = origin - a, q = glm::cross(s, ab);
+  const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && glm::dot(ac, q) / determinant > 0;
+}
+
 template <typename T>
 std::vector<T> split(const std::vector<T>& values, const std::vector<uint32_t>& indices) {
   std::vector<T> result;
@@ -195,6 +206,18 @@ bool is_planar(const Mesh& mesh, glm::dvec3& point, glm::dvec3& normal) {
   for (const glm::vec3& p : mesh.positions)
     if (std::abs(glm::dot(glm::dvec3(p) - point, normal)) > limit) return false;
   return true;
+}
+
+bool is_inside(const Mesh& mesh, const glm::dvec3& point) {
+  if (glm::any(glm::lessThan(point, mesh.bounds.min)) || glm::any(glm::greaterThan(point, mesh.bounds.max)))
+    return false;
+  const glm::dvec3 direction(0.5377, 0.7713, 0.3401);
+  size_t crossings = 0;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    crossings += crosses(point, direction, glm::dvec3(mesh.positions[mesh.indices[i]]),
+                         glm::dvec3(mesh.positions[mesh.indices[i + 1]]),
+                         glm::dvec3(mesh.positions[mesh.indices[i + 2]]));
+  return crossings % 2 == 1;
 }
 
 Mesh mirrored(const Mesh& mesh) {

@@ -39,6 +39,10 @@ uint64_t count_duplicate_vertices(const Mesh& mesh);
 // All vertices lie in one plane, within 1e-6 of the mesh's size. `normal`: unit, object space.
 bool is_planar(const Mesh& mesh, glm::dvec3& point, glm::dvec3& normal);
 
+// Does a ray from the point cross the mesh an odd number of times? Then it is inside, if the mesh is
+// watertight.
+bool is_inside(const Mesh& mesh, const glm::dvec3& point);
+
 // The same shape with object space mirrored in x, and triangles turned so that counter-clockwise stays the
 // front.
 Mesh mirrored(const Mesh& mesh);

@@ -72,8 +72,8 @@ struct Camera {  // right-handed, looks along -z; always projected with an infin
 
 enum class LightType { spot, point, directional };
 
-// A planar shape in the light's local x-y plane, centred on the light, that emits along its local -z. A
-// sphere is the disc that faces -z.
+// Of a spot light a shape in its local x-y plane that emits along -z (a sphere: the disc that faces -z), of a
+// point light a sphere, of a directional light the disc that it is seen as, on the plane at distance 1.
 struct AreaLight {
   enum class Shape { rectangle, disc, sphere, polygon } shape = Shape::rectangle;
   double width = 0, height = 0;      // world units, of the bounding rectangle

@@ -261,7 +261,7 @@ bool RayScene::occluded(const glm::dvec3& from, const glm::dvec3& normal, const 
 }
 
 uint32_t RayScene::occluded(const glm::dvec3& from, const glm::dvec3& normal, const glm::dvec3* targets,
-                            int count, TriangleId self) const {
+                            int count, bool infinite, TriangleId self) const {
   RayQuery query(false, self);
   RTCRay8 rays{};
   alignas(32) int valid[packet];
@@ -269,10 +269,10 @@ uint32_t RayScene::occluded(const glm::dvec3& from, const glm::dvec3& normal, co
   for (int i = 0; i < packet; ++i) {
     valid[i] = i < count ? -1 : 0;
     if (i >= count) continue;
-    const glm::vec3 dir(targets[i] - glm::dvec3(org));
+    const glm::vec3 dir(infinite ? targets[i] : targets[i] - glm::dvec3(org));
     rays.org_x[i] = org.x, rays.org_y[i] = org.y, rays.org_z[i] = org.z;
     rays.dir_x[i] = dir.x, rays.dir_y[i] = dir.y, rays.dir_z[i] = dir.z;
-    rays.tfar[i] = before_light;
+    rays.tfar[i] = infinite ? infinity : before_light;
     rays.mask[i] = ~0u;
   }
   occlude(valid, impl_->scene, query, rays);

@@ -58,9 +58,10 @@ class RayScene {
   // shadow itself.
   bool occluded(const glm::dvec3& from, const glm::dvec3& normal, const ShadowTarget& target,
                 TriangleId self) const;
-  // The same for up to 8 targets of one point: bit i is set when target i is occluded.
+  // The same for up to 8 targets of one point, all of them places or all of them directions (`infinite`): bit
+  // i is set when target i is occluded.
   uint32_t occluded(const glm::dvec3& from, const glm::dvec3& normal, const glm::dvec3* targets, int count,
-                    TriangleId self) const;
+                    bool infinite, TriangleId self) const;
 
  private:
   struct Impl;

@@ -78,10 +78,9 @@ class PixelShader {
   PixelShader(const ReferenceTracer::Impl& tracer, uint32_t samples)
       : tracer_(tracer), samples_(samples), sobol_(table_size(tracer.scene, samples)) {
     for (const Light& light : tracer.scene.lights)
-      areas_.push_back(
-          is_area(light, samples)
-              ? std::optional<AreaSampler>(std::in_place, tracer.scene, light, tracer.centre_of(light).value)
-              : std::nullopt);
+      areas_.push_back(is_area(light, samples) ? std::optional<AreaSampler>(std::in_place, tracer.scene,
+                                                                            light, tracer.centre_of(light))
+                                               : std::nullopt);
   }
 
   void shade(Reference& result, const SurfaceHit& hit, size_t pixel, NoiseSum& noise) const {
@@ -121,7 +120,8 @@ class PixelShader {
     int count = 0;
     const auto flush = [&] {
       if (count == 0) return;
-      const uint32_t mask = tracer_.rays.occluded(hit.position, hit.normal, targets, count, hit.triangle);
+      const uint32_t mask =
+          tracer_.rays.occluded(hit.position, hit.normal, targets, count, view.infinite(), hit.triangle);
       for (int k = 0; k < count; ++k) {
         if ((mask >> k & 1) != 0) continue;
         lit[later[k]] += weight[k];
@@ -134,7 +134,8 @@ class PixelShader {
       if (!sample) continue;  // not on the light
       const bool second = taken++ >= half;
       all[second] += sample->weight;
-      if (!(glm::dot(hit.normal, sample->target - hit.position) > 0)) continue;  // behind the surface: unlit
+      const glm::dvec3 to_sample = view.infinite() ? sample->target : sample->target - hit.position;
+      if (!(glm::dot(hit.normal, to_sample) > 0)) continue;  // behind the surface: unlit
       targets[count] = sample->target;
       weight[count] = sample->weight;
       later[count++] = second;
@@ -201,7 +202,7 @@ double noise_floor(const std::vector<NoiseSum>& rows, bool any_area, uint32_t sa
 
 }  // namespace
 
-bool is_area(const Light& light, uint32_t samples) { return samples > 0 && shines_as_area(light); }
+bool is_area(const Light& light, uint32_t samples) { return samples > 0 && has_size(light); }
 
 ShadowTarget ReferenceTracer::Impl::centre_of(const Light& light) const {
   if (light.type == LightType::directional)

@@ -35,7 +35,7 @@ struct Reference {
 struct ReferenceSettings {
   uint32_t width = 1280, height = 720;
   uint32_t samples =
-      0;  // 0: hard shadows of the lights' centres; N: N Owen-scrambled Sobol samples on area lights
+      0;  // 0: hard shadows of the lights' centres; N: N Owen-scrambled Sobol samples on lights with a size
   uint32_t camera = 0;                   // index into Scene::cameras
   std::function<void(double)> progress;  // 0..1; may be empty
 };

@@ -98,7 +98,7 @@ std::vector<ShadowTarget> targets_of(const Light& light, const ShadowTarget& cen
   if (!on_light(*light.area, glm::dvec2(0.0))) targets.clear();
   const glm::dmat3 axes(light.world_from_light);
   for (const glm::dvec3& point : border_points(*light.area))
-    targets.push_back({centre.value + axes * point, false});
+    targets.push_back({centre.value + axes * point, centre.infinite});
   return targets;
 }
 

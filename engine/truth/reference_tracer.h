@@ -20,7 +20,7 @@ struct ReferenceTracer::Impl {
   ShadowTarget centre_of(const Light& light) const;
 };
 
-// Is the light traced as an area, with `samples` as in ReferenceSettings? Only spot lights are.
+// Is the light traced as an area, with `samples` as in ReferenceSettings? Lights with a size are.
 bool is_area(const Light& light, uint32_t samples);
 
 }  // namespace gnomon

@@ -146,7 +146,7 @@ class AreaTemporal : public Pass {
     if (light_moved) push.bit |= kLightMoved;
     if (still_frames_ == 0) push.bit |= kCastersMoved;
     if (still_frames_ < frames_to_fade(c.params())) push.bit |= kShadowsFade;
-    const double size = light.area ? std::max(light.area->width, light.area->height) : 0.0;
+    const double size = shines_as_area(light) ? std::max(light.area->width, light.area->height) : 0.0;
     push.part[0] = std::bit_cast<uint32_t>(float(size));
     return push;
   }

@@ -37,6 +37,18 @@ glm::dvec3 offset_in(const Scene& scene, const LightView& view, const glm::dvec2
   return turn * glm::dvec3(local, 0.0);
 }
 
+// Points of a sphere around a point light, or directions to a sun, are no samples with maps of their own yet.
+void warn_about_sizes(Environment& e) {
+  const SceneFacts& facts = e.scene_facts();
+  for (uint32_t i = 0; i < facts.lights; ++i) {
+    const Light& light = e.scene().lights[i];
+    if (!has_size(light) || shines_as_area(light)) continue;
+    if (facts.shadowless[i].empty() && !facts.shines_as_point(i))
+      e.warn("light '" + light.name +
+             "' is sampled in its centre alone: only spot lights are sampled as areas");
+  }
+}
+
 // A part of a texel, within half of one, that a sample's window is moved by: where windows converge the
 // texels of all samples would coincide, and so would their errors. The centre's stays: a light without size
 // has the hard techniques' map.
@@ -84,6 +96,7 @@ void SampleMaps::prepare(Environment& e, uint32_t capacity, bool split) {
   layers_ = e.shape("maps").layers;
   size_ = e.shape("maps").extent.width;
   warn_about_maps(e, size_, MapsFrom::area);
+  warn_about_sizes(e);
   RasterState state;
   state.vertex = "area/sample_maps.vert.glsl";
   state.depth = VK_FORMAT_D32_SFLOAT;

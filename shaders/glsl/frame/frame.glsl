@@ -21,7 +21,13 @@ struct Light {
   vec4 direction;   // unit, the way it shines; w: range, 0 = unlimited
   vec4 intensity;   // candela or lux, linear RGB
   vec4 cone;        // cosines of the inner and outer half angle
+  vec4 size;        // half width, half height, world units; SHAPE_*; of a directional light the tangent of half its
+                    // angular diameter. All 0 without a size
 };
+#define SHAPE_RECTANGLE 0.0
+#define SHAPE_DISC 1.0
+#define SHAPE_SPHERE 2.0
+#define SHAPE_POLYGON 3.0
 #define LIGHT_SPOT 0.0
 #define LIGHT_POINT 1.0
 #define LIGHT_DIRECTIONAL 2.0

@@ -263,7 +263,7 @@ TEST(SceneLoad, CamerasAndLights) {
               1e-12);  // the scene's, for the first spot
   EXPECT_EQ(scene.lights[2].type, LightType::directional);
   EXPECT_FALSE(scene.lights[2].area.has_value());
-  EXPECT_TRUE(warns(scene, "/nodes/5/extras/area_light: only spot lights"));
+  EXPECT_TRUE(warns(scene, "/nodes/5/extras/area_light: a directional light needs an angular_diameter"));
   EXPECT_LT(scene.lights[3].map_fov, 170.0 / 180 * 3.14159265358979);
 }
 
