@@ -14,6 +14,7 @@
 
 #include "engine/base/params.h"
 #include "engine/base/shape.h"
+#include "engine/scene/scene_sizes.h"
 
 namespace gnomon {
 
@@ -114,6 +115,7 @@ class Declaration {
     uint32_t lights = 1;                  // lights of the scene; images per light have that many layers
     uint64_t memory = uint64_t{1} << 30;  // bytes that a technique's shadow maps may take at a time
     std::vector<LightType> light_types;   // of each light; empty: not known
+    SceneSizes scene{};                   // its geometry
   };
   // shapes and traits of the connected outputs, by input name; empty: nothing is connected (listing)
   struct Connected {

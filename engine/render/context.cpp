@@ -100,6 +100,10 @@ void Context::fill(const std::string& buffer_port, uint32_t value, uint64_t offs
   vkCmdFillBuffer(commands_, physical(buffer_port).buffer.handle(), offset, size, value);
 }
 
+void Context::update(const std::string& buffer_port, std::span<const std::byte> bytes, uint64_t offset) {
+  vkCmdUpdateBuffer(commands_, physical(buffer_port).buffer.handle(), offset, bytes.size(), bytes.data());
+}
+
 void Context::clear(const std::string& image_port, uint32_t value) {
   const GpuImage& image = physical(image_port).image;
   VkClearColorValue color;
@@ -257,6 +261,17 @@ void Context::draw_fullscreen(const Pipeline& pipeline) {
   bind(pipeline);
   set_cull(VK_CULL_MODE_NONE);
   vkCmdDraw(commands_, 3, 1, 0, 0);
+}
+
+void Context::draw_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset) {
+  bind(pipeline);
+  set_cull(VK_CULL_MODE_NONE);
+  vkCmdDrawIndirect(commands_, physical(port).buffer.handle(), offset, 1, sizeof(VkDrawIndirectCommand));
+}
+
+void Context::bind_vertices(const std::string& buffer_port, uint64_t offset) {
+  const VkBuffer buffer = physical(buffer_port).buffer.handle();
+  vkCmdBindVertexBuffers(commands_, 0, 1, &buffer, &offset);
 }
 
 }  // namespace gnomon

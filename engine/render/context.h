@@ -52,6 +52,8 @@ class Context {
   void dispatch_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset = 0);
   void fill(const std::string& buffer_port, uint32_t value, uint64_t offset = 0,
             uint64_t size = VK_WHOLE_SIZE);
+  // Bytes to a buffer that the pass declares transfer_write: at most 65536; size and offset multiples of 4.
+  void update(const std::string& buffer_port, std::span<const std::byte> bytes, uint64_t offset = 0);
   // All texels of an image of 32-bit integers or floats (its bits) that the pass declares transfer_write.
   void clear(const std::string& image_port, uint32_t value);
   // Tightly packed texels to such an image's mip 0: all of it, or rows of a layer.
@@ -80,6 +82,10 @@ class Context {
   void set_cull(VkCullModeFlags mode);
   void set_area(Extent extent);  // viewport and scissor: the target's upper left part, in pixels
   void draw_fullscreen(const Pipeline& pipeline);
+  // A VkDrawIndirectCommand of a buffer port, without culling; vertices of a pipeline that has some come from
+  // the port of bind_vertices().
+  void draw_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset = 0);
+  void bind_vertices(const std::string& buffer_port, uint64_t offset = 0);
   // Occlusion: reset() outside render(), query() inside it, around draws; then results() to a buffer that the
   // pass declares transfer_write: two words a query, the number of samples that passed (any number but 0 when
   // the device only tells whether there are some) and whether the query was answered.

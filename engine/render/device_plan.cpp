@@ -6,13 +6,22 @@
 #include <cstring>
 
 #include "engine/base/error.h"
+#include "engine/base/format.h"
 #include "engine/render/preamble.h"
 #include "engine/vulkan/commands.h"
 
 namespace gnomon {
 namespace {
 
+void check_range(const Device& device, const Resource& r) {
+  const uint64_t bytes = bytes_of(r.buffer), most = device.limits().maxStorageBufferRange;
+  if (r.is_buffer && (r.buffer_usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0 && bytes > most)
+    fail(fmt::format("'{}' needs {} bytes", r.name, bytes), {}, {},
+         fmt::format("this device's storage buffers have at most {} bytes: use a smaller scene", most));
+}
+
 Physical make_physical(const std::shared_ptr<Device>& device, const Resource& r, bool own_memory) {
+  check_range(*device, r);
   Physical physical;
   if (r.is_buffer) {
     const uint64_t bytes =
@@ -74,6 +83,7 @@ const ViewSet& views_of(const PlanNode& node, const std::vector<Physical>& resou
 }
 
 MemoryNeed device_need(const std::shared_ptr<Device>& device, const Resource& r) {
+  check_range(*device, r);
   const uint64_t granularity = device->limits().bufferImageGranularity;
   const VkMemoryRequirements need =
       r.is_buffer ? Buffer(device, std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16), r.buffer_usage,

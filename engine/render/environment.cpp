@@ -13,6 +13,7 @@
 #include "engine/render/gpu_scene.h"
 #include "engine/render/preamble.h"
 #include "engine/render/render_settings.h"
+#include "engine/vulkan/commands.h"
 #include "engine/vulkan/occlusion_queries.h"
 
 namespace gnomon {
@@ -97,6 +98,21 @@ void Environment::attach(const std::string& port, const Buffer& buffer) const {
     return;
   }
   fail(fmt::format("pass '{}' has no buffer port '{}' that shaders see", node_.id, port));
+}
+
+void Environment::write(const std::string& port, std::span<const std::byte> bytes) const {
+  if (bytes.empty()) return;
+  const Buffer& to = physical_of(node_, resources_, port).buffer;
+  if (bytes.size() > to.size())
+    fail(fmt::format("pass '{}' has {} bytes for '{}', which holds {}", node_.id, bytes.size(), port,
+                     to.size()));
+  const Buffer staging = host_buffer(bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  std::copy(bytes.begin(), bytes.end(), staging.bytes().begin());
+  OneShot once(device_);
+  const VkBufferCopy region{0, 0, bytes.size()};
+  vkCmdCopyBuffer(once.commands(), staging.handle(), to.handle(), 1, &region);
+  full_barrier(once.commands());
+  once.submit_and_wait();
 }
 
 void Environment::check_mips(const std::string& port) const {

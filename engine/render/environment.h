@@ -59,6 +59,9 @@ class Environment {
   // Shaders see `buffer`, which must outlive the pass' use, instead of the buffer port's own memory. Barriers
   // are the pass' business.
   void attach(const std::string& port, const Buffer& buffer) const;
+  // What a kept buffer port that the pass declares transfer_write holds before the first frame, from its
+  // start. Error: it is longer than the port.
+  void write(const std::string& port, std::span<const std::byte> bytes) const;
   // Error: this device cannot halve the port's format (Context::generate_mips).
   void check_mips(const std::string& port) const;
 

@@ -85,8 +85,11 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
                      settings.camera),
          scene->file.string(), "--camera", "cameras are counted from 0");
   const Camera& camera = scene->cameras[settings.camera];
-  Declaration::Setting setting{
-      {settings.width, settings.height}, uint32_t(scene->lights.size()), settings.memory, {}};
+  Declaration::Setting setting{{settings.width, settings.height},
+                               uint32_t(scene->lights.size()),
+                               settings.memory,
+                               {},
+                               scene_sizes(*scene)};
   for (const Light& light : scene->lights) setting.light_types.push_back(light.type);
   CompileOptions options;
   options.alias = settings.alias;

@@ -397,10 +397,13 @@ TEST_F(GpuRenderer, HistoryOfABuffer) {
   }
 }
 
-// Passes with buffers of their own keep them whichever copy of the history is in use.
-TEST_F(GpuRenderer, HistoryBesideAttachedBuffers) {
+// Kept buffers are the same whichever copy of the history is in use.
+TEST_F(GpuRenderer, HistoryBesideKeptBuffers) {
   const std::string volumes = R"({"id": "gbuffer", "type": "gbuffer"},
-    {"id": "volumes", "type": "shadow_volumes", "in": {"depth": "gbuffer.depth", "geometric": "gbuffer.geometric"}})";
+    {"id": "silhouettes", "type": "silhouettes"},
+    {"id": "volumes", "type": "shadow_volumes", "in": {"depth": "gbuffer.depth", "geometric": "gbuffer.geometric",
+      "triangles": "silhouettes.triangles", "facing": "silhouettes.facing", "edges": "silhouettes.edges",
+      "counts": "silhouettes.counts"}})";
   Renderer plain = renderer(file_with(volumes, R"({"visibility": "volumes.visibility"})"));
   plain.render(TimingMode::none);
   const auto wanted = plane(plain);

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
+#include <utility>
 
 #include "engine/scene/scene.h"
 
@@ -51,6 +52,31 @@ inline Mesh sphere(float radius, int rings, int segments) {
       if (i < rings - 1) mesh.indices.insert(mesh.indices.end(), {a, b, c});
       if (i > 0) mesh.indices.insert(mesh.indices.end(), {a, c, d});
     }
+  mesh.watertight = true;
+  finish(mesh);
+  return mesh;
+}
+
+// A cube of half side `half` about the origin; its faces look outwards or inwards.
+inline Mesh cube(float half, bool outwards = true) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-1.0f, 1.0f}) {
+      const auto first = static_cast<uint32_t>(mesh.positions.size());
+      for (int i = 0; i < 4; ++i) {
+        glm::vec3 p(0), n(0);
+        p[axis] = side;
+        p[(axis + 1) % 3] = i == 1 || i == 2 ? side : -side;
+        p[(axis + 2) % 3] = i >= 2 ? 1.0f : -1.0f;
+        n[axis] = outwards ? side : -side;
+        mesh.positions.push_back(half * p);
+        mesh.normals.push_back(n);
+        mesh.uvs.emplace_back(0);
+      }
+      for (const uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + i);
+    }
+  if (!outwards)
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) std::swap(mesh.indices[i], mesh.indices[i + 1]);
   mesh.watertight = true;
   finish(mesh);
   return mesh;

@@ -1,13 +1,12 @@
 // How every triangle casts for one light: 1 as it is wound, -1 turned over, 0 not at all. Decided once a triangle, so that
-// all of its edges agree. Casting triangles are also the volume's caps.
-#include "volume/shadow_volumes.glsl"
+// all of its edges agree.
+#include "volume/silhouettes.glsl"
 
 layout(local_size_x = 64) in;
 
-void emit(uint list, uvec3 corners, uint instance) {
-  uint at = arguments[list + 2] + atomicAdd(arguments[list], 3u);
-  for (int i = 0; i < 3; ++i) vertices[at + i] = uvec2(corners[i], instance);
-}
+layout(push_constant) uniform Push {
+  uint light, count;  // of triangles
+} push;
 
 const float ROUNDING = 5e-7;  // relative error of a position: four units in the last place
 
@@ -26,21 +25,15 @@ int side_to_light(Light light, vec3 a, vec3 b, vec3 c) {
 
 void main() {
   Light light = lights[push.light];
+  uint first = push.light * push.count;
   for (uint i = gl_GlobalInvocationID.x; i < push.count; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
     uvec4 triangle = triangles[i];
     uint instance = triangle.w & INSTANCE;
     int side = side_to_light(light, caster_position(triangle.x, instance), caster_position(triangle.y, instance),
                              caster_position(triangle.z, instance));
     bool front = side > 0;
-    bool closed = (triangle.w & CLOSED) != 0;
     bool mirrored = instances[instance].info.z != 0;
-    // A watertight mesh casts from the far side: its caps then never coincide with lit receivers.
-    bool casts = side != 0 && (!closed || front == mirrored);
-    facing[i] = !casts ? 0 : front ? 1 : -1;
-    if (!casts) continue;
-    if (push.z_fail != 0 || (triangle.w & SEE_THROUGH) != 0) emit(front ? CAPS : TURNED_CAPS, triangle.xyz, instance);
-    // The far cap of parallel light is a single point.
-    if (push.z_fail != 0 && !is_directional(light))
-      emit(SIDES, (front ? triangle.zyx : triangle.xyz) | AT_INFINITY, instance);
+    bool casts = side != 0 && (far_sides[instance] == 0 || front == mirrored);
+    facing[first + i] = !casts ? 0 : front ? 1 : -1;
   }
 }
