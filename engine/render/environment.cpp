@@ -68,36 +68,8 @@ Pipeline Environment::raster(RasterState state) const {
   return make_raster_pipeline(device_, state_.pipeline_layout.get(), state, state_.preamble, cache_);
 }
 
-Buffer Environment::buffer(uint64_t bytes, VkBufferUsageFlags usage) const {
-  return Buffer(device_, std::max<uint64_t>(bytes, 16), usage, Place::device);
-}
-
-Buffer Environment::host_buffer(uint64_t bytes, VkBufferUsageFlags usage) const {
-  return Buffer(device_, std::max<uint64_t>(bytes, 16), usage, Place::host);
-}
-
 Buffer Environment::upload(std::span<const std::byte> bytes, VkBufferUsageFlags usage) const {
   return upload_buffer(device_, bytes, usage);
-}
-
-void Environment::attach(const std::string& port, const Buffer& buffer) const {
-  const uint64_t most = device_->limits().maxStorageBufferRange;
-  if (buffer.size() > most)
-    fail(fmt::format("pass '{}' needs {} bytes for '{}'", node_.id, buffer.size(), port), {}, {},
-         fmt::format("this device's storage buffers have at most {} bytes: use a smaller scene", most));
-  for (const ShaderPort& shown : shader_ports(node_.declaration)) {
-    if (shown.port->name != port) continue;
-    const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
-    for (const VkDescriptorSet set : {state_.set, state_.other_set}) {  // the other: of every second frame
-      if (!set) continue;
-      VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, shown.binding, 0, 1};
-      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-      write.pBufferInfo = &info;
-      vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
-    }
-    return;
-  }
-  fail(fmt::format("pass '{}' has no buffer port '{}' that shaders see", node_.id, port));
 }
 
 void Environment::write(const std::string& port, std::span<const std::byte> bytes) const {
@@ -106,7 +78,7 @@ void Environment::write(const std::string& port, std::span<const std::byte> byte
   if (bytes.size() > to.size())
     fail(fmt::format("pass '{}' has {} bytes for '{}', which holds {}", node_.id, bytes.size(), port,
                      to.size()));
-  const Buffer staging = host_buffer(bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  const Buffer staging(device_, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Place::host);
   std::copy(bytes.begin(), bytes.end(), staging.bytes().begin());
   OneShot once(device_);
   const VkBufferCopy region{0, 0, bytes.size()};

@@ -53,12 +53,8 @@ class Environment {
   Pipeline compute(const std::string& file, Defines defines = {}) const;
   Pipeline raster(RasterState state) const;
 
-  // Buffers that live as long as the pass, for what only prepare() knows the size or the content of.
-  Buffer buffer(uint64_t bytes, VkBufferUsageFlags usage) const;
+  // A buffer of this content that lives as long as the caller keeps it.
   Buffer upload(std::span<const std::byte> bytes, VkBufferUsageFlags usage) const;
-  // Shaders see `buffer`, which must outlive the pass' use, instead of the buffer port's own memory. Barriers
-  // are the pass' business.
-  void attach(const std::string& port, const Buffer& buffer) const;
   // What a kept buffer port that the pass declares transfer_write holds before the first frame, from its
   // start. Error: it is longer than the port.
   void write(const std::string& port, std::span<const std::byte> bytes) const;
@@ -68,8 +64,6 @@ class Environment {
   void fact(const std::string& name, double value);  // for run.json
   // Queries for Context::query, all of one size.
   OcclusionQueries occlusion_queries(uint32_t count) const;
-  // Memory that the host writes and shaders read; visible to every later submission.
-  Buffer host_buffer(uint64_t bytes, VkBufferUsageFlags usage) const;
 
   // Tells that a part of this pass does not run for this scene, and by which fact.
   void left_out(std::string part, std::string reason);

@@ -74,9 +74,10 @@ class AreaRefine : public Pass {
     const bool cache =
         d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
     constexpr double kShare = 0.25;  // of the memory limit: area_words.cpp takes the rest
-    SampleMaps::declare_views(d);
+    const uint32_t views = SampleMaps::declare_views(d);
     const ImageShape visibility = SampleMaps::declare(d, cache ? wanted : kWordSamples, cache, kShare);
-    declare_sample_outputs(d, visibility.extent, wanted);
+    const uint32_t slots = declare_sample_outputs(d, visibility.extent, wanted);
+    SampleMaps::declare_samples(d, views, uint64_t(slots) * views);
     d.output_buffer("answers", Access::transfer_write | Access::host_read,
                     {uint64_t(2) * d.setting().lights * most_questions(levels), 4, "uint"},
                     "of each quad asked about: pixels with banding, and whether the query was answered");
@@ -104,10 +105,7 @@ class AreaRefine : public Pass {
     const uint32_t lights = uint32_t(e.scene().lights.size());
     queries_ = e.occlusion_queries(lights * most_questions(p.integer("levels")));
     place_lights(e);
-    uint32_t most_views = 0;  // of a light
-    for (const ViewSet::Range& views : e.views("views").of_light)
-      most_views = std::max(most_views, views.count);
-    maps_.prepare(e, slots_ * most_views);
+    maps_.prepare(e);
     batch_ = std::min(maps_.layers(), kWordSamples);
     cache_.resize(maps_.layers(), p.flag("cache") ? batch_ : maps_.layers());
     if (p.flag("cache") && maps_.layers() <= batch_)

@@ -63,8 +63,9 @@ class AreaTemporal : public Pass {
     d.kind(PassKind::mixed);
     d.summary("Tests every camera pixel against one point of each area light a frame and keeps the tests.");
     d.cite("Schwaerzler 2009, ch. 5, eq. 5.1-5.18");
-    SampleMaps::declare_views(d);
+    const uint32_t views = SampleMaps::declare_views(d);
     const ImageShape visibility = SampleMaps::declare(d, kMapLayers, false);
+    SampleMaps::declare_samples(d, views, views);
     ImageShape buffer = visibility;
     buffer.format = VK_FORMAT_R32G32B32A32_SFLOAT;
     d.input("history", Access::storage_read, true, "`shadow_buffer` of the frame before");
@@ -92,7 +93,7 @@ class AreaTemporal : public Pass {
     }
     for (uint32_t light = 0; light < scene.lights.size(); ++light) sequences_.emplace_back(scene, light);
     poses_.resize(scene.lights.size());
-    maps_.prepare(e, uint32_t(e.views("views").views.size()), moving_);
+    maps_.prepare(e, moving_);
     prepare_shaders(e);
   }
 

@@ -37,7 +37,9 @@ class AreaUniform : public Pass {
     if (pattern != "sobol" && !is_square(n)) d.refuse("samples", "a square number for a grid");
     const bool cache =
         d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
-    const ImageShape visibility = SampleMaps::declare(d, uint32_t(n) * SampleMaps::declare_views(d), cache);
+    const uint32_t views = SampleMaps::declare_views(d);
+    const ImageShape visibility = SampleMaps::declare(d, uint32_t(n) * views, cache);
+    SampleMaps::declare_samples(d, views, uint64_t(n) * views);
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
   }
@@ -47,7 +49,7 @@ class AreaUniform : public Pass {
     choose_points(e);
     uint32_t capacity = 0;
     for (const LightView& view : e.views("views").views) capacity += uint32_t(points_[view.light].size());
-    maps_.prepare(e, capacity);
+    maps_.prepare(e);
     cached_ = e.params().flag("cache") && capacity <= maps_.layers();
     if (e.params().flag("cache") && !cached_)
       e.warn("cache: the memory limit holds " + std::to_string(maps_.layers()) + " of " +

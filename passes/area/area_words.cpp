@@ -25,7 +25,7 @@ uint32_t slots_for(const Declaration& d, Extent pixels, uint32_t wanted) {
 
 }  // namespace
 
-void declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted) {
+uint32_t declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted) {
   const uint32_t slots = slots_for(d, pixels, wanted);
   const uint64_t count = uint64_t(pixels.width) * pixels.height, words = slots / kWordSamples;
   const uint64_t planes = uint64_t(divide_up(pixels.width, kWordSamples)) * pixels.height * slots;
@@ -40,6 +40,7 @@ void declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted) {
                   "of each light, its first slot and the number of its samples");
   d.transient_buffer("lit_planes", kBoth, {planes, 4, "uint"}, "lit_words by samples: a bit a pixel");
   d.transient_buffer("edge_planes", kBoth, {planes, 4, "uint"}, "edge_words by samples: a bit a pixel");
+  return slots;
 }
 
 Extent declare_sample_inputs(Declaration& d) {

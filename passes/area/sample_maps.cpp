@@ -86,13 +86,19 @@ ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache, doub
   constexpr Access kMaps = Access::depth | Access::sampled;
   d.transient("maps", kMaps, true, maps, "depth from the samples rendered at a time, a layer each");
   if (cache) d.keep("maps");
-  constexpr Access kHostBuffer = Access::storage_read | Access::transfer_write;  // attached: prepare()
-  d.transient_buffer("areas", kHostBuffer, {1, 16, "vec4"}, "the lights' views, widened for their samples");
-  d.transient_buffer("samples", kHostBuffer, {1, 16, "vec4"}, "place and weight of each sample");
   return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
 }
 
-void SampleMaps::prepare(Environment& e, uint32_t capacity, bool split) {
+void SampleMaps::declare_samples(Declaration& d, uint64_t views, uint64_t capacity) {
+  constexpr Access kFromHost = Access::storage_read | Access::host_write;
+  constexpr uint32_t kStride = sizeof(glm::vec4);
+  d.transient_buffer("areas", kFromHost, {views * sizeof(AreaData) / kStride, kStride, "vec4"},
+                     "the lights' views, widened for their samples");
+  d.transient_buffer("samples", kFromHost, {capacity * sizeof(SampleData) / kStride, kStride, "vec4"},
+                     "place and weight of each sample");
+}
+
+void SampleMaps::prepare(Environment& e, bool split) {
   layers_ = e.shape("maps").layers;
   size_ = e.shape("maps").extent.width;
   warn_about_maps(e, size_, MapsFrom::area);
@@ -115,11 +121,6 @@ void SampleMaps::prepare(Environment& e, uint32_t capacity, bool split) {
   state.fragment = "map/shadow_map.glsl";
   state.layout = VertexLayout::masked;
   pipelines_.masked = e.raster(state);
-  areas_ =
-      e.host_buffer(e.views("views").views.size() * sizeof(AreaData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  samples_ = e.host_buffer(capacity * sizeof(SampleData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  e.attach("areas", areas_);
-  e.attach("samples", samples_);
 }
 
 void SampleMaps::begin(Context& c) {
@@ -131,7 +132,7 @@ void SampleMaps::begin(Context& c) {
     const AreaView area = area_view(c.scene().scene(), views[i]);
     widened_[i] = area.view, converge_[i] = area.converge;
   }
-  auto* out = reinterpret_cast<AreaData*>(areas_.bytes().data());
+  auto* out = reinterpret_cast<AreaData*>(c.buffer("areas").bytes().data());
   for (const LightViewData& data :
        light_view_data(widened_, glm::dvec3(c.scene().camera().world_from_camera[3]))) {
     std::copy(std::begin(data.rows), std::end(data.rows), out->rows);
@@ -141,7 +142,7 @@ void SampleMaps::begin(Context& c) {
 }
 
 void SampleMaps::write(const Context& c, uint32_t view, uint32_t first, std::span<const LightPoint> points) {
-  auto* out = reinterpret_cast<SampleData*>(samples_.bytes().data()) + first;
+  auto* out = reinterpret_cast<SampleData*>(c.buffer("samples").bytes().data()) + first;
   for (const LightPoint& point : points) {
     const glm::dvec3 offset = offset_in(c.scene().scene(), c.views("views").views[view], point.local);
     const LightView& wide = widened_[view];

@@ -30,14 +30,16 @@ class SampleMaps {
 
   // Input `views`; returns how many there are.
   static uint32_t declare_views(Declaration& d);
-  // Inputs `depth`, `geometric`; parameters `size` and those of a shadow test; transients `maps`,
-  // `areas`, `samples`. The maps take as much of the memory limit as they can use: `wanted` layers at most,
-  // all of them kept from frame to frame when `cache`. `share`: of the limit. Returns the shape of a
-  // visibility image: one layer a light.
+  // Inputs `depth`, `geometric`; parameters `size` and those of a shadow test; transient `maps`. The maps
+  // take as much of the memory limit as they can use: `wanted` layers at most, all of them kept from frame to
+  // frame when `cache`. `share`: of the limit. Returns the shape of a visibility image: one layer a light.
   static ImageShape declare(Declaration& d, uint32_t wanted, bool cache, double share = 1);
 
-  // `capacity`: samples at most, over all lights. `split`: render_split() is used instead of render().
-  void prepare(Environment& e, uint32_t capacity, bool split = false);
+  // Transients `areas`, for so many views, and `samples`, for at most `capacity` over all views.
+  static void declare_samples(Declaration& d, uint64_t views, uint64_t capacity);
+
+  // `split`: render_split() is used instead of render().
+  void prepare(Environment& e, bool split = false);
   // The frame's light views.
   void begin(Context& c);
   // Writes samples [first, first + points.size()), of the view's light.
@@ -53,7 +55,6 @@ class SampleMaps {
   void render(Context& c, uint32_t view, uint32_t first, const Targets& targets, uint32_t count);
   ScenePipelines pipelines_;
   Cull cull_ = Cull::none;
-  Buffer areas_, samples_;          // host-visible
   std::vector<LightView> widened_;  // AreaView, per view
   std::vector<double> converge_;
   uint32_t layers_ = 0, size_ = 1;
