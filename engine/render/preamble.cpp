@@ -66,12 +66,17 @@ std::string sampled_text(const ShaderPort& shown, bool constant) {
   std::string text = fmt::format("layout(set = 1, binding = {}) uniform {}sampler2D{} {};\n", shown.binding,
                                  f.prefix, p.array ? "Array" : "", p.name);
   const char* pixel = constant ? "ivec2(0)" : "p";
+  const char* layer = constant ? "0" : "layer";
   if (p.array)
     text += fmt::format("{}vec4 {}_at(ivec2 p, int layer) {{ return texelFetch({}, ivec3({}, {}), 0); }}\n",
-                        f.prefix, p.name, p.name, pixel, constant ? "0" : "layer");
+                        f.prefix, p.name, p.name, pixel, layer);
   else
     text += fmt::format("{}vec4 {}_at(ivec2 p) {{ return texelFetch({}, {}, 0); }}\n", f.prefix, p.name,
                         p.name, pixel);
+  if (p.array && p.image.mips > 1)
+    text += fmt::format(
+        "{}vec4 {}_at(ivec2 p, int layer, int level) {{ return texelFetch({}, ivec3({}, {}), {}); }}\n",
+        f.prefix, p.name, p.name, pixel, layer, constant ? "0" : "level");
   return text;
 }
 
@@ -86,8 +91,10 @@ std::string storage_text(const ShaderPort& shown) {
     return fmt::format("layout(set = 1, binding = {}, std430) {}buffer {}_block {{ {} {}[]; }};\n",
                        shown.binding, qualifier, p.name, p.buffer.glsl, p.name);
   const GlslFormat f = glsl_format(p.image.format);
-  return fmt::format("layout(set = 1, binding = {}, {}) uniform {}{}image2D{} {};\n", shown.binding,
-                     f.qualifier, qualifier, f.prefix, p.array ? "Array" : "", p.name);
+  const uint32_t levels = storage_levels(p);
+  const std::string number = levels > 1 ? fmt::format("[{}]", levels) : std::string();
+  return fmt::format("layout(set = 1, binding = {}, {}) uniform {}{}image2D{} {}{};\n", shown.binding,
+                     f.qualifier, qualifier, f.prefix, p.array ? "Array" : "", p.name, number);
 }
 
 bool in_block(const ParamSpec& spec) {
@@ -95,6 +102,11 @@ bool in_block(const ParamSpec& spec) {
 }
 
 }  // namespace
+
+uint32_t storage_levels(const Port& port) {
+  const bool both = has(port.access, Access::storage_read) && has(port.access, Access::storage_write);
+  return both && !port.is_buffer ? port.image.mips : 1;
+}
 
 std::vector<ShaderPort> shader_ports(const Declaration& declaration) {
   std::vector<ShaderPort> shown;

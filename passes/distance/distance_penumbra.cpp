@@ -24,6 +24,10 @@ class DistancePenumbra : public Pass {
                    "workgroups (x, y, z) and number of tiles");
     d.input("depth", Access::sampled, false, "the camera's device depth");
     d.input("geometric", Access::sampled, false, "octahedral geometric normal");
+    d.optional_input(
+        "width", Access::sampled, true,
+        "of the penumbra at each pixel, world units, instead of one for all: a silhouette pixel's "
+        "counts for those that it is nearest to (world metric)");
     d.choice("metric", "world", {"world", "screen"}, "distances in the world or in the image");
     declare_penumbra_width(d, 0.014);
     d.number("pixels", 15, 1, 16384, "pixels", "width of the penumbra in the screen metric");
@@ -41,7 +45,8 @@ class DistancePenumbra : public Pass {
     width_ = std::max(float(penumbra_width(e.scene(), e.params())), std::numeric_limits<float>::min());
     e.fact("penumbra_world", width_);
     const double diagonal = 2.0 * e.scene().bounds.radius();
-    if (e.params().choice("metric") == "world" && width_ > widest_penumbra * diagonal)
+    if (e.params().choice("metric") == "world" && !e.connected("width") &&
+        width_ > widest_penumbra * diagonal)
       e.warn("a penumbra this wide, more than a twentieth of the scene's diagonal, dissolves shadows");
   }
   void record(Context& c) override {

@@ -5,6 +5,7 @@
 #include "engine/render/environment.h"
 #include "engine/scene/scene.h"
 #include "passes/filtered/moment_basis.h"
+#include "passes/filtered/summed_area.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"
 
@@ -25,8 +26,13 @@ class MomentTest : public Pass {
     const ImageShape moments =
         d.input("moments", Access::sampled, true, "the filtered basis; a view's layers follow each other");
     d.reads_around("shadow_map", 1);
-    if (moments.mips == 1) d.reads_around("moments", 2);
+    const bool soft = d.optional_input("width", Access::sampled, true,
+                                       "of the penumbra at the receiver, world units: 'moments' is then a "
+                                       "summed_area_table, read over the light's shape of that width")
+                          .has_value();
+    if (moments.mips == 1 && !soft) d.reads_around("moments", 2);
     read_basis(d, "moments");
+    read_table(d, "moments", soft);
     refuse_another_map(d);
     d.choice("bound", "chebyshev", {"chebyshev", "gaussian", "gaussian_cdf"},
              "variance bases: Chebyshev's inequality, twice the upper tail of "
@@ -42,6 +48,7 @@ class MomentTest : public Pass {
     const ImageShape moments = e.shape("moments");
     Defines defines = moment_defines(moments, e.shape("shadow_map").layers);
     if (moments.mips > 1) defines.emplace_back("MIP_MAPS", "1");
+    for (auto& define : table_defines(moments, e.params())) defines.push_back(std::move(define));
     test_.prepare(e, "filtered/moment_test.glsl", defines);
     report_bias(e);
     warn_about_kernel(e, e.shape("shadow_map").extent.width);

@@ -103,6 +103,11 @@ DepthMapTraits read_depth_map(Declaration& d, const std::string& input) {
   return t;
 }
 
+void read_pyramid(Declaration& d, const std::string& input) {
+  if (d.is_connected(input) && !d.trait(input, map_trait::kPyramid))
+    d.refuse_source(input, "is no pyramid of least and greatest depths");
+}
+
 std::string text_trait(const Declaration& d, const std::string& input, const char* key,
                        std::string standard) {
   const Value* value = d.trait(input, key);

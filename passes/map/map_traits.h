@@ -22,6 +22,10 @@ inline constexpr const char* kNegativeExponent = "negative_exponent";
 inline constexpr const char* kTerms = "terms";
 inline constexpr const char* kKernel =
     "kernel";  // texels: width of the filter that was applied; absent: none
+inline constexpr const char* kLargestKernel = "largest_kernel";  // texels; of summed-area tables alone
+inline constexpr const char* kLeast = "least";  // values that the ends of a table's steps stand for
+inline constexpr const char* kGreatest = "greatest";
+inline constexpr const char* kPyramid = "pyramid";  // true: least and greatest depths of a map's blocks
 }  // namespace map_trait
 
 // How a map of depth was made and is to be compared with.
@@ -37,6 +41,8 @@ void set_depth_map(Declaration& d, const std::string& output, const DepthMapTrai
 
 // Of a reader: the same as derived values. What is connected must be depth from the light, unfiltered.
 DepthMapTraits read_depth_map(Declaration& d, const std::string& input);
+// Of a reader of a pyramid of such a map: anything else is refused.
+void read_pyramid(Declaration& d, const std::string& input);
 // `encoding` alone.
 void read_encoding(Declaration& d, const std::string& input);
 

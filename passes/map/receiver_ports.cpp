@@ -45,17 +45,19 @@ const Pipeline& LightPipelines::of(const Context& c, uint32_t light) const {
   return by_views_.at(c.views("views").of_light[light].count);
 }
 
-void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines) {
+void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines,
+                       const PerLightOutput& output) {
   pipelines_.prepare(e, file, defines);
+  output_ = output.port;
   for (const std::string& why : e.scene_facts().shadowless) shadowless_.push_back(!why.empty());
   if (std::find(shadowless_.begin(), shadowless_.end(), true) != shadowless_.end())
-    unshadowed_ = e.compute("frame/unshadowed.glsl");
+    unshadowed_ = e.compute(output.shadowless);
 }
 
 bool PerLight::shade_shadowless(Context& c, uint32_t light) const {
   if (!shadowless_[light]) return false;
   c.push(unshadowed_, light);
-  c.dispatch_over(unshadowed_, c.shape("visibility").extent);
+  c.dispatch_over(unshadowed_, c.shape(output_).extent);
   return true;
 }
 
@@ -71,7 +73,7 @@ void PerLight::dispatch_over(Context& c, uint32_t light, Extent pixels) const {
 }
 
 void PerLight::dispatch_all(Context& c) const {
-  const ImageShape shape = c.shape("visibility");
+  const ImageShape shape = c.shape(output_);
   for (uint32_t light = 0; light < shape.layers; ++light)
     if (!shade_shadowless(c, light)) dispatch_over(c, light, shape.extent);
 }

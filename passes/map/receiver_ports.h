@@ -31,15 +31,21 @@ class LightPipelines {
   std::map<uint32_t, Pipeline> by_views_;
 };
 
+// What a pass makes, an image with a layer a light, and the shader that fills the layer of a light whose
+// shadows the camera cannot see.
+struct PerLightOutput {
+  std::string port = "visibility", shadowless = "frame/unshadowed.glsl";
+};
+
 // A compute shader that includes shadow_query.glsl, run for one light at a time.
 class PerLight {
  public:
-  void prepare(Environment& e, const std::string& file, const Defines& defines = {});
-  // Lights whose shadows the camera cannot see (SceneFacts): writes `visibility` without the shader. Then
-  // true.
+  void prepare(Environment& e, const std::string& file, const Defines& defines = {},
+               const PerLightOutput& output = {});
+  // Lights whose shadows the camera cannot see (SceneFacts): fills the output without the shader. Then true.
   bool shade_shadowless(Context& c, uint32_t light) const;
   void dispatch_over(Context& c, uint32_t light, Extent pixels) const;
-  // One invocation per pixel of `visibility`, light by light.
+  // One invocation per pixel of the output, light by light.
   void dispatch_all(Context& c) const;
   // `part`: for passes that do their work in several dispatches.
   void dispatch_indirect(Context& c, uint32_t light, const std::string& port,
@@ -49,6 +55,7 @@ class PerLight {
   const Pipeline& ready(Context& c, uint32_t light,
                         std::array<uint32_t, 2> part = {}) const;  // push constants too
   LightPipelines pipelines_;
+  std::string output_;
   std::vector<bool> shadowless_;  // per light
   Pipeline unshadowed_;           // only when some light is
 };

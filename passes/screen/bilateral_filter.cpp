@@ -7,7 +7,7 @@ namespace {
 
 class BilateralFilter : public StripFilter {
  public:
-  BilateralFilter() : StripFilter("screen/bilateral_filter.glsl") {}
+  BilateralFilter() : StripFilter("screen/bilateral_filter.glsl", "screen/bilateral_filter_soft.glsl") {}
   void declare(Declaration& d) const override {
     d.summary(
         "Averages visibility with weights that fall with distance from the pixel and from its tangent plane, "
