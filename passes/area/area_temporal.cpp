@@ -14,6 +14,7 @@
 #include "passes/area/sample_maps.h"
 #include "passes/area/temporal_samples.h"
 #include "passes/frame/pixel_list.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -77,6 +78,7 @@ class AreaTemporal : public Pass {
              "(negative: a moving caster's shadow), mean distance of blockers along the light's axis, world "
              "units (0: none)");
     d.output("visibility", kBoth, true, visibility, "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::soft);
     declare_pixel_list(d, visibility.extent, "pixels of one light whose tests are too few");
     declare_pixel_list(d, visibility.extent, "pixels of one light that have no history", "fresh",
                        "fresh_arguments");

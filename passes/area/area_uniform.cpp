@@ -13,6 +13,7 @@
 #include "engine/scene/scene.h"
 #include "passes/area/area_light_points.h"
 #include "passes/area/sample_maps.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -40,6 +41,7 @@ class AreaUniform : public Pass {
     const ImageShape visibility = SampleMaps::declare(d, uint32_t(n) * SampleMaps::declare_views(d), cache);
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::soft);
   }
 
   void prepare(Environment& e) override {

@@ -6,6 +6,7 @@
 #include "engine/render/environment.h"
 #include "engine/scene/scene.h"
 #include "passes/distance/penumbra_width.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -34,6 +35,7 @@ class DistancePenumbra : public Pass {
     d.inout("visibility", Access::storage_read | Access::storage_write, true,
             "in: hard shadow; out: 0 in umbra, 1 lit; a layer a light");
     d.optional_input_behind("views", "visibility", Access::uniform, "what the shadow map's layers show");
+    makes_shadows(d, "visibility", ShadowKind::filtered);
   }
   void prepare(Environment& e) override {
     shade_ = e.compute("distance/distance_penumbra.glsl");

@@ -7,6 +7,7 @@
 #include "passes/map/map_domain.h"
 #include "passes/map/min_max_map.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -30,6 +31,7 @@ class PercentageCloserFilter : public Pass {
                                 "or in umbra; the result is the same");
     if (min_max) MinMaxMap::declare(d, d.find("shadow_map")->image);
     d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::filtered);
   }
   void prepare(Environment& e) override {
     min_max_ = e.params().flag("min_max") && !e.settings().keep_all;

@@ -9,6 +9,7 @@
 #include "passes/frame/pixel_list.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -28,6 +29,7 @@ class RevectorizationBasedFilter : public Pass {
            "only pixels whose kernel touches a silhouette are filtered; the result is the same");
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::filtered);
     declare_pixel_list(d, visibility.extent, "pixels whose kernel touches one light's silhouette");
   }
 
