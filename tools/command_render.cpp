@@ -206,7 +206,7 @@ std::string error_of(const Job& job, const Images& images, double seconds) {
   const auto scene =
       job.scene->animation ? std::make_shared<const Scene>(posed(*job.scene, seconds)) : job.scene;
   return Truth(scene, settings, cache_folder())
-      .error_json(images.visibility, finite_color ? &*images.color : nullptr, job.graph.vars);
+      .error_json(images.visibility, finite_color ? &*images.color : nullptr, job.graph);
 }
 
 // Reads, measures and writes the frames of a sequence as they are shown.

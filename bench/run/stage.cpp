@@ -101,7 +101,7 @@ class DeviceStage final : public Stage {
     row.nonfinite = shown.nonfinite;
     const bool finite_color = shown.color && count_nonfinite(*shown.color) == 0;
     row.error_json =
-        truth_.error_json(shown.visibility, finite_color ? &*shown.color : nullptr, config.graph.vars);
+        truth_.error_json(shown.visibility, finite_color ? &*shown.color : nullptr, config.graph);
     if (!images_of_.empty())
       row.images =
           write_row_images(images_of_, row, truth_, shown.visibility, shown.color ? &*shown.color : nullptr);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
 #include "engine/graph/pass.h"
 #include "engine/light/light_view.h"
@@ -19,7 +20,7 @@
 namespace gnomon {
 namespace {
 
-// Bits, as in shaders/glsl/area/area_temporal_query.glsl.
+// Bits of a push; the last: so few frames ago that shadows of then may still be there.
 constexpr uint32_t kLightMoved = 1, kCastersMoved = 2, kShadowsFade = 4;
 constexpr uint32_t kMapLayers = 2;  // of what stands still and of what moves
 
@@ -116,7 +117,9 @@ class AreaTemporal : public Pass {
 
  private:
   void prepare_shaders(Environment& e) {
-    Defines defines;
+    Defines defines{{"LIGHT_MOVED", std::to_string(kLightMoved)},
+                    {"CASTERS_MOVED", std::to_string(kCastersMoved)},
+                    {"SHADOWS_FADE", std::to_string(kShadowsFade)}};
     if (moving_) defines.emplace_back("MOVING_CASTERS", "1");
     hard_.prepare(e, "area/area_temporal.glsl", defines);
     defines.emplace_back("HISTORY", "1");
