@@ -31,7 +31,7 @@ MeasuredError error_of(const RenderJob& job, const RenderedImages& images, doubl
   const auto scene =
       job.scene->animation ? std::make_shared<const Scene>(posed(*job.scene, seconds)) : job.scene;
   return Truth(scene, settings, cache_folder())
-      .error(images.visibility, finite_color ? &*images.color : nullptr, job.graph.vars);
+      .error(images.visibility, finite_color ? &*images.color : nullptr, job.graph);
 }
 
 // Runs the frames; what the last one that was measured without time stamps shows.

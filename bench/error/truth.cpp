@@ -8,20 +8,14 @@
 #include "bench/error/measure.h"
 #include "engine/base/error.h"
 #include "engine/truth/metrics.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint32_t usual_map_size = 1024;  // texels
-
-uint32_t map_size_of(const Values& vars) {
-  const auto found = vars.find("shadow_map");
-  if (found == vars.end()) return usual_map_size;
-  const auto* texels = std::get_if<std::int64_t>(&found->second);
-  return texels != nullptr && *texels > 0 ? static_cast<uint32_t>(*texels) : usual_map_size;
-}
+constexpr uint32_t usual_map_side = 1024;  // texels: of techniques without a map
 
 }  // namespace
 
@@ -48,8 +42,8 @@ const std::vector<std::vector<uint32_t>>& Truth::deep_umbra_of(const EdgeSetting
   return found->second;
 }
 
-MeasuredError Truth::error(const Image& visibility, const Image* color, const Values& vars) const {
-  const EdgeSettings edges{&tracer_, camera_, map_size_of(vars)};
+MeasuredError Truth::error(const Image& visibility, const Image* color, const Graph& graph) const {
+  const EdgeSettings edges{&tracer_, camera_, map_side(graph).value_or(usual_map_side)};
   // FLIP takes about as long as all the rest together, and shares nothing with it.
   std::future<double> flipped;
   if (color != nullptr)

@@ -101,7 +101,7 @@ class DeviceStage final : public Stage {
     const auto& shown = subject.shown();
     row.nonfinite = shown.nonfinite;
     const bool finite_color = shown.color && count_nonfinite(*shown.color) == 0;
-    row.error = truth_.error(shown.visibility, finite_color ? &*shown.color : nullptr, config.graph.vars);
+    row.error = truth_.error(shown.visibility, finite_color ? &*shown.color : nullptr, config.graph);
     row.reference = RowReference{samples_};
     if (!images_of_.empty())
       row.images =

@@ -78,7 +78,8 @@ std::vector<StabilityAxis> make_axes() {
                             {"10", "1", "90", "120", "150", "170"}, {"1", "170"}, &S::fov, 1e-3, 179.9));
   axes.push_back(variable_axis("shadow_map", "texels", "side of the shadow map",
                                {"4096", "128", "64", "32", "16", "8", "4", "3", "2", "1", "16384"},
-                               {"1", "2"}, {"shadow_map"}));
+                               {"1", "2"}, {}));
+  axes.back().map_side = true;
   axes.push_back(
       {"size",
        "pixels",

@@ -1,7 +1,6 @@
 // Inputs that connect themselves to what stands behind another input's source.
 #include "engine/base/error.h"
-#include "engine/base/json_text.h"
-#include "engine/graph/graph_resolve.h"
+#include "engine/graph/graph_resolve_parts.h"
 
 namespace gnomon {
 
@@ -22,7 +21,7 @@ bool check_behind(const ResolvedGraph& graph, const ResolvedNode& node, const Po
   if (!from.sound) return true;
   problems.add("'" + from.node->id + "." + source->second.port + "' has no '" + port.name +
                    "' behind it, which '" + node.node->id + "' (" + node.node->type + ") needs",
-               file, pointer_to(pointer_to(node.node->place, "in"), port.beside));
+               file, place_of_input(node, port.beside));
   return false;
 }
 

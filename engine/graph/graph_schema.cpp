@@ -58,20 +58,30 @@ std::vector<Declaration> variants(const Pass& pass) {
   return result;
 }
 
+// Of an input: not one that connects itself.
+bool is_connected_by_file(const Port& port) {
+  return port.beside.empty() && (port.direction == Direction::in || port.direction == Direction::inout);
+}
+
 json inputs_schema(const std::vector<Declaration>& variants) {
   json ports = json::object();
-  std::map<std::string, size_t> required_in;
   for (const Declaration& declaration : variants)
-    for (const Port& port : declaration.ports()) {
-      if (port.direction != Direction::in && port.direction != Direction::inout) continue;
-      if (!port.beside.empty()) continue;
-      ports[port.name] = {{"description", port.help}, {"$ref", "#/$defs/port"}};
-      if (!port.optional) ++required_in[port.name];
-    }
+    for (const Port& port : declaration.ports())
+      if (is_connected_by_file(port))
+        ports[port.name] = {{"description", port.help}, {"$ref", "#/$defs/port"}};
+  return {{"type", "object"}, {"properties", ports}, {"additionalProperties", false}};
+}
+
+// Inputs that every variant asks for.
+json required_inputs(const std::vector<Declaration>& variants) {
+  std::map<std::string, size_t> asked;
+  for (const Declaration& declaration : variants)
+    for (const Port& port : declaration.ports())
+      if (is_connected_by_file(port) && !port.optional) ++asked[port.name];
   json required = json::array();
-  for (const auto& [name, count] : required_in)
+  for (const auto& [name, count] : asked)
     if (count == variants.size()) required.push_back(name);
-  return {{"type", "object"}, {"properties", ports}, {"required", required}, {"additionalProperties", false}};
+  return required;
 }
 
 json params_schema(const std::vector<Declaration>& variants) {
@@ -82,12 +92,28 @@ json params_schema(const std::vector<Declaration>& variants) {
   return {{"type", "object"}, {"properties", params}, {"additionalProperties", false}};
 }
 
+// A name, or several, each of `names`.
+json name_list(const json& names, const char* description) {
+  const json one = names.is_null() ? json{{"type", "string"}} : json{{"enum", names}};
+  return {{"description", description},
+          {"anyOf", json::array({one, json{{"type", "array"}, {"items", one}, {"uniqueItems", true}}})}};
+}
+
 // { "if": the type is this one, "then": these inputs and parameters }
 json type_rule(const std::string& type, const Pass& pass) {
   const std::vector<Declaration> declarations = variants(pass);
+  const json params = params_schema(declarations);
+  json names = json::array();
+  for (const auto& [name, param] : params["properties"].items()) names.push_back(name);
   json then{{"description", declarations.front().summary()},
-            {"properties", {{"in", inputs_schema(declarations)}, {"params", params_schema(declarations)}}}};
-  if (!then["properties"]["in"]["required"].empty()) then["required"] = {"in"};
+            {"properties", {{"in", inputs_schema(declarations)}, {"params", params}}}};
+  if (!names.empty())
+    then["properties"]["vars"] = name_list(names, "parameters that are the variables of the same names");
+  const json required = required_inputs(declarations);
+  if (!required.empty())  // one by one, or by the names of those who give them
+    then["anyOf"] =
+        json::array({json{{"required", {"from"}}},
+                     json{{"required", {"in"}}, {"properties", {{"in", {{"required", required}}}}}}});
   return {{"if", {{"properties", {{"type", {{"const", type}}}}}}}, {"then", then}};
 }
 
@@ -117,6 +143,8 @@ json pass_schema() {
            {{"id", {{"type", "string"}, {"pattern", name_pattern}}},
             {"type", {{"enum", types}}},
             {"in", {{"type", "object"}}},
+            {"from", name_list(nullptr, "passes whose outputs feed the inputs of the same names")},
+            {"vars", json::object()},
             {"params", {{"type", "object"}}},
             {"comment", json::object()}}},
           {"allOf", rules},

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -116,6 +117,10 @@ struct CompileOptions {
 // Throws Error (file, place) for what does not fit together: shapes, formats, accesses, cycles.
 Plan compile(const Graph& graph, const Declaration::Setting& setting, const SceneFacts& facts,
              const CompileOptions& options = {});
+
+// Ids of the passes that are the technique's own: those that a scene without a visible shadow does without.
+// None where the graph has nothing to put in their place.
+std::set<std::string> technique_passes(const Graph& graph, const Declaration::Setting& setting);
 
 // The plan as stable, readable text: the tests' and `gnomon explain`'s view.
 std::string to_text(const Plan& plan);

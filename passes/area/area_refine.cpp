@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <string>
 
 #include "engine/base/divide_up.h"
 #include "engine/base/error.h"
@@ -92,7 +93,7 @@ class AreaRefine : public Pass {
 
   void prepare(Environment& e) override {
     const Params& p = e.params();
-    find_.prepare(e, "area/area_refine_find.glsl");
+    find_.prepare(e, "area/area_refine_find.glsl", {{"PART_NO_CASTERS", std::to_string(kNoCasters)}});
     walk_.prepare(e, "area/area_refine_walk.glsl");
     transpose_ = e.compute("area/area_refine_transpose.glsl");
     RasterState state;
@@ -154,7 +155,7 @@ class AreaRefine : public Pass {
   }
 
  private:
-  static constexpr uint32_t kNoCasters = 1;  // as in shaders/glsl/area/area_refine_find.glsl
+  static constexpr uint32_t kNoCasters = 1;  // a push: there are no maps
 
   // Slots: area lights share what there is; a point takes one word.
   void place_lights(Environment& e) {

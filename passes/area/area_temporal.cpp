@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
 #include "engine/graph/pass.h"
 #include "engine/light/light_view.h"
@@ -14,11 +15,12 @@
 #include "passes/area/sample_maps.h"
 #include "passes/area/temporal_samples.h"
 #include "passes/frame/pixel_list.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
 
-// Bits, as in shaders/glsl/area/area_temporal_query.glsl.
+// Bits of a push; the last: so few frames ago that shadows of then may still be there.
 constexpr uint32_t kLightMoved = 1, kCastersMoved = 2, kShadowsFade = 4;
 constexpr uint32_t kMapLayers = 2;  // of what stands still and of what moves
 
@@ -78,6 +80,7 @@ class AreaTemporal : public Pass {
              "(negative: a moving caster's shadow), mean distance of blockers along the light's axis, world "
              "units (0: none)");
     d.output("visibility", kBoth, true, visibility, "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::soft);
     declare_pixel_list(d, visibility.extent, "pixels of one light whose tests are too few");
     declare_pixel_list(d, visibility.extent, "pixels of one light that have no history", "fresh",
                        "fresh_arguments");
@@ -115,7 +118,9 @@ class AreaTemporal : public Pass {
 
  private:
   void prepare_shaders(Environment& e) {
-    Defines defines;
+    Defines defines{{"LIGHT_MOVED", std::to_string(kLightMoved)},
+                    {"CASTERS_MOVED", std::to_string(kCastersMoved)},
+                    {"SHADOWS_FADE", std::to_string(kShadowsFade)}};
     if (moving_) defines.emplace_back("MOVING_CASTERS", "1");
     hard_.prepare(e, "area/area_temporal.glsl", defines);
     defines.emplace_back("HISTORY", "1");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
 #include "engine/graph/pass.h"
 #include "engine/light/light_view.h"
@@ -13,11 +14,12 @@
 #include "engine/scene/scene.h"
 #include "passes/area/area_light_points.h"
 #include "passes/area/sample_maps.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
 
-constexpr uint32_t kFirst = 1, kLast = 2;  // bits, as in shaders/glsl/area/area_uniform.glsl
+constexpr uint32_t kFirst = 1, kLast = 2;  // bits of a push: begins, ends a light's samples
 
 bool is_square(int64_t n) {
   const auto root = int64_t(std::llround(std::sqrt(double(n))));
@@ -42,10 +44,12 @@ class AreaUniform : public Pass {
     SampleMaps::declare_samples(d, views, uint64_t(n) * views);
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::soft);
   }
 
   void prepare(Environment& e) override {
-    test_.prepare(e, "area/area_uniform.glsl");
+    test_.prepare(e, "area/area_uniform.glsl",
+                  {{"PART_FIRST", std::to_string(kFirst)}, {"PART_LAST", std::to_string(kLast)}});
     choose_points(e);
     uint32_t capacity = 0;
     for (const LightView& view : e.views("views").views) capacity += uint32_t(points_[view.light].size());

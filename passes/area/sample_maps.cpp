@@ -19,6 +19,7 @@
 #include "engine/scene/scene.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/map_traits.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -85,6 +86,7 @@ ImageShape SampleMaps::declare(Declaration& d, uint32_t wanted, bool cache, doub
   const ImageShape maps{{size, size}, layers, 1, VK_FORMAT_D32_SFLOAT};
   constexpr Access kMaps = Access::depth | Access::sampled;
   d.transient("maps", kMaps, true, maps, "depth from the samples rendered at a time, a layer each");
+  draws_maps(d, "maps", "size");
   if (cache) d.keep("maps");
   return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
 }

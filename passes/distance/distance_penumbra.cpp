@@ -6,6 +6,7 @@
 #include "engine/render/environment.h"
 #include "engine/scene/scene.h"
 #include "passes/distance/penumbra_width.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -24,20 +25,21 @@ class DistancePenumbra : public Pass {
                    "workgroups (x, y, z) and number of tiles");
     d.input("depth", Access::sampled, false, "the camera's device depth");
     d.input("geometric", Access::sampled, false, "octahedral geometric normal");
+    read_penumbra_traits(d, "nearest");
     d.optional_input(
         "width", Access::sampled, true,
         "of the penumbra at each pixel, world units, instead of one for all: a silhouette pixel's "
         "counts for those that it is nearest to (world metric)");
-    d.choice("metric", "world", {"world", "screen"}, "distances in the world or in the image");
-    declare_penumbra_width(d, 0.014);
-    d.number("pixels", 15, 1, 16384, "pixels", "width of the penumbra in the screen metric");
-    d.number(
-        "depth_tolerance", 1e-3, 0, 1, "of the view depth",
-        "distance from the receiver's tangent plane at which a silhouette pixel still is on its surface");
+    const bool screen = d.choice("metric", "world", {"world", "screen"},
+                                 "distances in the world or in the image") == "screen";
+    const Value* pixels = d.trait("nearest", "pixels");
+    if (screen && pixels && std::get<double>(*pixels) < 1)
+      d.refuse_source("nearest", "was made for a penumbra without a width in pixels");
     d.number("bend", 0.25, 0, 1, "1", "further such distance, per distance between the two");
     d.inout("visibility", Access::storage_read | Access::storage_write, true,
             "in: hard shadow; out: 0 in umbra, 1 lit; a layer a light");
     d.optional_input_behind("views", "visibility", Access::uniform, "what the shadow map's layers show");
+    makes_shadows(d, "visibility", ShadowKind::filtered);
   }
   void prepare(Environment& e) override {
     shade_ = e.compute("distance/distance_penumbra.glsl");

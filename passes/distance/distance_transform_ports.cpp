@@ -102,6 +102,7 @@ void declare_ports(Declaration& d) {
   d.number("depth_tolerance", 2.5e-4, 0, 1, "of the view depth",
            "distance from a pixel's tangent plane at which a neighbour is on the same surface");
   declare_images(d, source, algorithm);
+  set_penumbra_traits(d, "nearest");
   if (algorithm == "banded_exact") declare_envelope(d, source);
   declare_lists(d, source, algorithm);
   const bool reaching = bounded(algorithm) && depth && reach;

@@ -8,6 +8,7 @@
 #include "passes/filtered/summed_area.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -42,6 +43,7 @@ class MomentTest : public Pass {
              "four_moments: depth unbounded, or known to lie in its range");
     declare_thresholds(d);
     d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::filtered);
   }
 
   void prepare(Environment& e) override {

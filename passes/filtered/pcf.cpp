@@ -8,6 +8,7 @@
 #include "passes/map/map_traits.h"
 #include "passes/map/min_max_map.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -44,6 +45,7 @@ class PercentageCloserFilter : public Pass {
                                 "or in umbra; the result is the same");
     if (min_max) MinMaxMap::declare(d, d.find("shadow_map")->image);
     d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::filtered);
   }
   void prepare(Environment& e) override {
     const bool soft = e.connected("width");

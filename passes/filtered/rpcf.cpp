@@ -1,5 +1,6 @@
 // The pass rpcf: percentage-closer filtering of the revectorized shadow.
 #include <algorithm>
+#include <string>
 
 #include "engine/base/divide_up.h"
 #include "engine/graph/pass.h"
@@ -9,6 +10,7 @@
 #include "passes/frame/pixel_list.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -32,12 +34,14 @@ class RevectorizationBasedFilter : public Pass {
            "only pixels whose kernel touches a silhouette are filtered; the result is the same");
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::filtered);
     declare_pixel_list(d, visibility.extent, "pixels whose kernel touches one light's silhouette");
   }
 
   void prepare(Environment& e) override {
     find_.prepare(e, "filtered/rpcf_find.glsl");
-    filter_.prepare(e, "filtered/rpcf_filter.glsl");
+    filter_.prepare(e, "filtered/rpcf_filter.glsl",
+                    {{"BLOCK", std::to_string(kBlock)}, {"ROW_SHIFT", std::to_string(kRowShift)}});
     report_bias(e);
     warn_about_kernel(e, e.shape("shadow_map").extent.width);
   }
@@ -55,8 +59,8 @@ class RevectorizationBasedFilter : public Pass {
   }
 
  private:
-  static constexpr uint32_t kBlock = 14,
-                            kRowShift = 8;  // samples a side at most; bits: as in rpcf_filter.glsl
+  static constexpr uint32_t kBlock = 14;    // samples a side that are done together at most
+  static constexpr uint32_t kRowShift = 8;  // of push.part.y: the block's bits, above which is its row
 
   // Block by block; without reuse row by row of each block.
   void filter(Context& c, uint32_t light) const {

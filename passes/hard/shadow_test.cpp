@@ -4,6 +4,7 @@
 #include "engine/render/environment.h"
 #include "engine/scene/scene.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -16,6 +17,7 @@ class ShadowTest : public Pass {
     const ImageShape visibility = declare_receiver(d);
     d.reads_around("shadow_map", 1);
     d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::hard);
   }
   void prepare(Environment& e) override {
     test_.prepare(e, "hard/shadow_test.glsl");

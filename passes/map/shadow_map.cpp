@@ -9,6 +9,7 @@
 #include "passes/map/caster_layers.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/map_traits.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -36,6 +37,7 @@ class ShadowMap : public Pass {
       d.output("depth", Access::depth, true, layers, "depth of the first surface; 1 where there is none");
     }
     set_depth_map(d, "depth", traits);
+    draws_maps(d, "depth", "size");
     if (cache) d.keep("depth");
   }
 

@@ -10,6 +10,7 @@
 #include "engine/render/gpu_scene.h"
 #include "engine/render/render_settings.h"
 #include "engine/scene/scene.h"
+#include "passes/technique.h"
 #include "passes/volume/receiver_planes.h"
 
 namespace gnomon {
@@ -35,6 +36,7 @@ class PlanarShadows : public Pass {
     d.integer("planes", 4, 1, 16, "1", "receivers: the largest groups of coplanar triangles");
     d.output("visibility", Access::color, true, {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT},
              "0 in shadow, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::hard);
   }
 
   void prepare(Environment& e) override {

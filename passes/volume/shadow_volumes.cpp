@@ -11,6 +11,7 @@
 #include "engine/render/gpu_scene.h"
 #include "engine/render/render_settings.h"
 #include "engine/scene/scene.h"
+#include "passes/technique.h"
 #include "passes/volume/closed_casters.h"
 #include "passes/volume/near_plane_shadow.h"
 #include "passes/volume/silhouette_mesh.h"
@@ -43,6 +44,7 @@ class ShadowVolumes : public Pass {
     d.input("geometric", Access::sampled, false, "octahedral geometric normal");
     d.output("visibility", Access::color, true, {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT},
              "0 in shadow, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::hard);
     d.transient("stencil", Access::depth, false, {depth.extent, 1, 1, VK_FORMAT_D32_SFLOAT_S8_UINT},
                 "the camera's depth again, and the volumes around each pixel");
     const BufferShape triangles = d.input_buffer("triangles", Access::storage_read, "of `silhouettes`");

@@ -61,14 +61,6 @@ Outputs frame(Renderer& renderer, const Graph& graph) {
   return images;
 }
 
-bool has_history(const std::vector<GraphNode>& nodes) {
-  return std::any_of(nodes.begin(), nodes.end(), [](const GraphNode& node) {
-    const bool reads =
-        std::any_of(node.in.begin(), node.in.end(), [](const auto& in) { return in.second.previous; });
-    return reads || has_history(node.body);
-  });
-}
-
 Outputs frame(const std::shared_ptr<const Scene>& scene, const Graph& graph, const RenderSettings& s) {
   Renderer renderer(device(), scene, graph, s);
   return frame(renderer, graph);
@@ -148,7 +140,7 @@ TEST_P(EveryGraph, RunsRepeatsAndIsTheSameHoweverItIsSetUp) {
     Renderer renderer(device(), scene, graph, small());
     const Outputs first = frame(renderer, graph);
     expect_in_range(first, small(), scene->lights.size(), name);
-    if (has_history(graph.nodes)) renderer.play();  // begins again
+    if (reads_history(graph)) renderer.play();  // begins again
     EXPECT_TRUE(same(first, frame(renderer, graph))) << name << ": two frames differ";
     if (name == scenes().back().first) {  // with all passes there, memory is shared in other ways
       EXPECT_LE(largest_difference(first, frame(scene, graph, kept)), kRounding) << name;

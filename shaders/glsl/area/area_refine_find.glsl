@@ -6,7 +6,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-const uint PART_NO_CASTERS = 1u;  // push.part.y: there are no maps, for nothing casts a shadow of this light
+// PART_NO_CASTERS, of push.part.y: there are no maps, for nothing casts a shadow of this light.
 
 bool sample_lit(Query query, out bool edge) {
   ivec2 texel = ivec2(floor(query.position));

@@ -4,8 +4,7 @@
 #include "lib/temporal_shadow.glsl"
 #include "frame/pixel_list.glsl"
 
-// Bits of push.bit. SHADOWS_FADE: so few frames ago that shadows of then may still be there.
-const uint LIGHT_MOVED = 1u, CASTERS_MOVED = 2u, SHADOWS_FADE = 4u;
+// LIGHT_MOVED, CASTERS_MOVED, SHADOWS_FADE: bits of push.bit, as the pass defines them.
 
 const int STILL_LAYER = 0, MOVING_LAYER = 1;  // of `maps`: casters that stand still (or all), casters that may move
 

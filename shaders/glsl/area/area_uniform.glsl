@@ -3,7 +3,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-const uint PART_FIRST = 1u, PART_LAST = 2u;  // bits of push.part.x: begins, ends a light's samples
+// PART_FIRST, PART_LAST: bits of push.part.x: begins, ends a light's samples.
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);

@@ -28,8 +28,8 @@ float revectorized(bool lit, bvec4 d, vec4 distances) {
   return any(d) ? rbsm_filtered(lit, rbsm_relative_position_filtered(distances, params.max_size)) : float(lit);
 }
 
-const int BLOCK = 14;       // samples a side that are done together at most
-const uint ROW_SHIFT = 8u;  // push.part: the block in x and y, and above the latter's 8 bits its row
+// BLOCK: samples a side that are done together at most. push.part: the block in x and y, and above the latter's ROW_SHIFT bits
+// its row.
 
 // Blocks a side, and samples a side of a block; of the last ones some lie beyond the kernel and do not count.
 int blocks() { return (KERNEL + BLOCK - 1) / BLOCK; }

@@ -362,8 +362,11 @@ TEST_F(GraphTest, SchemaDescribesEveryPass) {
   EXPECT_EQ(params["width"]["description"], "side of the kernel; unit: texels");
   EXPECT_EQ(params["width"]["default"], 3);
   EXPECT_EQ(params["mode"]["anyOf"][0]["enum"], json::parse(R"(["box", "tent", "gauss"])"));
-  EXPECT_EQ(found["properties"]["in"]["required"], json::parse(R"(["source"])"));
-  EXPECT_EQ(found["required"], json::parse(R"(["in"])"));
+  // Inputs are connected one by one, or by naming who gives them.
+  EXPECT_EQ(found["anyOf"], json::parse(R"([{"required": ["from"]},
+      {"required": ["in"], "properties": {"in": {"required": ["source"]}}}])"));
+  EXPECT_EQ(found["properties"]["vars"]["anyOf"][0]["enum"],
+            json::parse(R"(["clamp", "mode", "scale", "width"])"));
 }
 
 // --- fuzz ---

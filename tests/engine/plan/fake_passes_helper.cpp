@@ -159,6 +159,13 @@ struct Huge : Fake {
   }
 };
 
+struct Target : Fake {
+  void declare(Declaration& d) const override {
+    d.output("target", written, false, full_screen(d), "to be changed in place");
+    d.output("guide", written, false, full_screen(d), "beside it");
+  }
+};
+
 struct Says : Fake {
   void declare(Declaration& d) const override {
     const std::string tone = d.choice("tone", "warm", {"warm", "cold"}, "of the result");
@@ -223,6 +230,7 @@ void register_fake_passes() {
   registry.add("t_bypass", make<BypassPass>);
   registry.add("t_layers", make<Layers>);
   registry.add("t_huge", make<Huge>);
+  registry.add("t_target", make<Target>);
   registry.add("t_says", make<Says>);
   registry.add("t_carries", make<Carries>);
   registry.add("t_asks", make<Asks>);

@@ -46,16 +46,15 @@ TEST(MapTraits, MomentsSayTheirBasisAndTheFilterItsKernel) {
 
 struct Wrong {
   const char* name;
-  const char* passes;               // after the G-buffer, the views and two maps
+  const char* passes;               // after the G-buffer and two maps
   std::vector<const char*> pieces;  // of the message
 };
 
 std::string error_of(const Wrong& wrong) {
   const std::string text =
       R"({ "schema": 1, "name": "wrong", "passes": [ { "id": "gbuffer", "type": "gbuffer" },
-    { "id": "views", "type": "light_views" },
-    { "id": "map", "type": "shadow_map", "in": { "views": "views.views" } },
-    { "id": "other", "type": "shadow_map", "in": { "views": "views.views" }, "params": { "encoding": "linear" } },
+    { "id": "views", "type": "light_views" }, { "id": "map", "type": "shadow_map", "from": "views" },
+    { "id": "other", "type": "shadow_map", "from": "views", "params": { "encoding": "linear" } },
     { "id": "moments", "type": "shadow_moments", "in": { "shadow_map": "map.depth" } },)" +
       std::string(wrong.passes) + R"(], "outputs": { "result": "end.)" +
       (std::string(wrong.name) == "filter" ? "result" : "visibility") + R"(" } })";
