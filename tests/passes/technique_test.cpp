@@ -20,7 +20,9 @@ TEST(Technique, SaysWhatItsShadowsAre) {
                                                       {"area_adaptive_rb", ShadowKind::soft},
                                                       {"area_temporal", ShadowKind::soft},
                                                       {"shadow_volumes", ShadowKind::hard},
-                                                      {"planar_shadows", ShadowKind::hard}};
+                                                      {"planar_shadows", ShadowKind::hard},
+                                                      {"pcss", ShadowKind::soft},
+                                                      {"savsm", ShadowKind::soft}};
   for (const auto& [name, kind] : kinds) EXPECT_EQ(shadow_kind(load_graph(find_graph(name))), kind) << name;
 }
 

@@ -197,6 +197,7 @@ TEST_F(CliTest, ListsNeedNoDevice) {
   const Outcome passes = run("list passes");
   EXPECT_EQ(passes.status, 0) << passes.error;
   EXPECT_NE(passes.out.find("gbuffer"), std::string::npos);
+  EXPECT_NE(passes.out.find("is asked for encoding, bias"), std::string::npos);
   EXPECT_NE(run("list graphs").out.find("shadow_mapping"), std::string::npos);
   EXPECT_NE(run("list scenes").out.find("fence"), std::string::npos);
   EXPECT_NE(run("list metrics").out.find("misclassified"), std::string::npos);
