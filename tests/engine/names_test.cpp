@@ -29,6 +29,8 @@ constexpr Own own_words[] = {
     {"graph", "pattern", "a keyword of JSON Schema"},
     {"scene", "shape", "a member of a light's extras"},
     {"scene", "radius", "the same"},
+    {"scene", "width", "the same"},
+    {"scene", "color", "a member of glTF's lights"},
     {"scene", "source", "a member of glTF's textures"},
     {"truth", "bias", "a metric"},
     {"truth", "pixels", "a metric's unit"},
