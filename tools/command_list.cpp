@@ -77,7 +77,7 @@ void list_passes() {
     }
     for (const ParamSpec& spec : declaration.param_specs())
       if (spec.from.empty())
-        fmt::print("  param {:<18}{} [default {}; {}]\n", spec.name, spec.help, to_string(spec.standard),
+        fmt::print("  param {:<18}{} [default {}; {}]\n", spec.name, spec.help, to_string(spec.default_value),
                    range_of(spec));
     list_traits(declaration);
     fmt::print("\n");

@@ -54,7 +54,7 @@ json errors_of(const json& row) {
   return errors;
 }
 
-// Passes in their order, turns of a loop added up.
+// Passes in their order, iterations of a loop added up.
 json passes_of(const json& row) {
   json passes = json::array();
   std::map<std::string, size_t> known;
