@@ -84,7 +84,7 @@ int check_command(const std::vector<std::string>& files) {
 void add_check(CLI::App& app, int& status) {
   auto files = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("check", "check graph, suite and scene files; needs no device");
-  command->add_option("FILE", *files, "what it is, is told by its content")->required();
+  command->add_option("FILE", *files, "what it is, its content says")->required();
   command->footer(
       R"(Prints 'FILE: ok (...)' or every problem with its place, a JSON pointer. Exit status 2 when any file has one.
 

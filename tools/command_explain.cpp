@@ -44,7 +44,7 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
 struct Measured {
   std::string device;
   double lean_ms = 0, full_ms = 0;                     // of a frame
-  std::map<std::string, double> lean_pass, full_pass;  // GPU ms of each pass, all of its turns and parts
+  std::map<std::string, double> lean_pass, full_pass;  // GPU ms of each pass, all of its iterations and parts
   MemoryUse lean_memory, full_memory;
 };
 
@@ -167,7 +167,7 @@ void add_explain(CLI::App& app, int& status) {
   command
       ->add_option(
           "--repeat", options->repeat,
-          "frames measured, in turn with a run that keeps all; 0: none, and only whole passes are told")
+          "frames measured, in turn with a run that keeps all; 0: none, and only whole passes are reported")
       ->type_name("N")
       ->capture_default_str();
   add_light_scale(*command, options->light_scale);

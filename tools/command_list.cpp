@@ -78,7 +78,7 @@ void list_passes() {
     }
     for (const ParamSpec& spec : declaration.param_specs())
       if (spec.from.empty())
-        print("  param {:<18}{} [default {}; {}]\n", spec.name, spec.help, to_string(spec.standard),
+        print("  param {:<18}{} [default {}; {}]\n", spec.name, spec.help, to_string(spec.default_value),
               range_of(spec));
     list_traits(declaration);
     print("\n");

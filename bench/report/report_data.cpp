@@ -42,7 +42,7 @@ json errors_of(const Row& row) {
   return errors;
 }
 
-// Passes in their order, turns of a loop added up.
+// Passes in their order, iterations of a loop added up.
 json passes_of(const Row& row) {
   json passes = json::array();
   std::map<std::string, size_t> known;

@@ -29,14 +29,14 @@ void add_configs(SuiteReading& reading, const std::string& name, const json* set
   for (const Problem& problem : found.all())
     reading.problems.add(problem.what, problem.file, problem.place, problem.hint);
   if (!found.empty()) return;
-  std::set<std::string> told;  // the combinations of one sweep share most of their mistakes
+  std::set<std::string> reported;  // the combinations of one sweep share most of their mistakes
   for (const Values& values : combinations) {
     try {
       reading.suite.configs.push_back(
           {load_graph(find_graph(name), values), values, entry, at.sizes, at.light_scales, 0});
     } catch (const Error& error) {
       for (const Problem& problem : error.problems()) {
-        if (!told.insert(to_string(problem)).second) continue;
+        if (!reported.insert(to_string(problem)).second) continue;
         const bool own_place = problem.file.empty();
         reading.problems.add(problem.what, own_place ? reading.file : problem.file,
                              own_place ? place : problem.place, problem.hint);

@@ -21,7 +21,7 @@ enum class ParamType { flag, integer, number, choice };
 struct ParamSpec {
   std::string name;
   ParamType type = ParamType::number;
-  Value standard;                    // the default
+  Value default_value;
   double min = 0, max = 0;           // inclusive range of integers and numbers
   std::vector<std::string> choices;  // of a choice, in order; the index is the value GLSL sees
   std::string unit;                  // "texels", "world units", "1" for a plain ratio, ...

@@ -42,7 +42,7 @@ void Declaration::derived(std::string_view input, ParamSpec spec) {
   for (const ParamSpec& other : specs_)
     if (other.name == spec.name) fail("a pass declares parameter '" + spec.name + "' twice");
   spec.from = declared(input).name;
-  resolved_[spec.name] = spec.standard;
+  resolved_[spec.name] = spec.default_value;
   specs_.push_back(std::move(spec));
 }
 

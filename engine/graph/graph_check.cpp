@@ -169,7 +169,7 @@ class NodeCheck {
   }
 
   void check_required() {
-    const bool told = std::any_of(node_.from.begin(), node_.from.end(),
+    const bool reported = std::any_of(node_.from.begin(), node_.from.end(),
                                   [&](uint32_t source) { return !graph_.nodes[source].sound; });
     for (const Port& port : node_.declaration.ports()) {
       const bool input = port.direction == Direction::in || port.direction == Direction::inout;
@@ -177,7 +177,7 @@ class NodeCheck {
       if (by_itself && !check_behind(graph_, node_, port, complaints_.file, complaints_.problems))
         node_.sound = false;
       const bool connected = node_.node->in.contains(port.name) || node_.in.contains(port.name);
-      if (input && !by_itself && !port.optional && !connected && !told)
+      if (input && !by_itself && !port.optional && !connected && !reported)
         unsound("required input '" + port.name + "' of '" + node_.node->type + "' is not connected",
                 pointer_to(node_.node->place, "in"));
     }

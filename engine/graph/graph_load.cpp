@@ -154,15 +154,15 @@ class Loader {
   uint32_t max_turns(const json* value, const std::string& place) {
     constexpr int64_t most = 65536;
     if (!value) return 1;
-    const std::optional<Value> turns = vars_.resolve(*value, place);
-    if (!turns) return 1;
-    const auto* integer = std::get_if<int64_t>(&*turns);
-    const auto* number = std::get_if<double>(&*turns);
+    const std::optional<Value> iterations = vars_.resolve(*value, place);
+    if (!iterations) return 1;
+    const auto* integer = std::get_if<int64_t>(&*iterations);
+    const auto* number = std::get_if<double>(&*iterations);
     const double count = integer ? double(*integer) : number ? *number : 0;
     if (count >= 1 && count <= double(most) && std::trunc(count) == count) return uint32_t(count);
     problems_.add(
-        "'max' is " + shown(*value) + ": must be an integer in 1.." + std::to_string(most) + " turns", file_,
-        place);
+        "'max' is " + shown(*value) + ": must be an integer in 1.." + std::to_string(most) + " iterations",
+        file_, place);
     return 1;
   }
 

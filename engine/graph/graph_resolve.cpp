@@ -61,10 +61,10 @@ class Resolver {
   }
 
   // Whoever read the file has complained about what is missing.
-  bool told_missing(const std::string& text) const { return text.empty() && !problems_.empty(); }
+  bool reported_missing(const std::string& text) const { return text.empty() && !problems_.empty(); }
 
   void check_id(const GraphNode& node) {
-    if (told_missing(node.id)) return;
+    if (reported_missing(node.id)) return;
     if (!is_identifier(node.id))
       problem("id " + in_quotes(node.id) + " is not a name", pointer_to(node.place, "id"),
               "letters, digits, '_' and '-'");
@@ -81,7 +81,7 @@ class Resolver {
     if (!resolved.pass) {
       resolved.sound = false;
     }
-    if (!resolved.pass && !told_missing(node.type)) {
+    if (!resolved.pass && !reported_missing(node.type)) {
       std::vector<std::string> types = PassRegistry::instance().types();
       types.push_back("loop");
       problem("unknown pass type " + in_quotes(node.type), pointer_to(node.place, "type"),
@@ -98,7 +98,7 @@ class Resolver {
       if (body.back() == loop.node->controller) loop.controller = i;
     }
     const std::string& name = loop.node->controller;
-    if (!told_missing(name) && std::find(body.begin(), body.end(), name) == body.end())
+    if (!reported_missing(name) && std::find(body.begin(), body.end(), name) == body.end())
       problem("controller " + in_quotes(name) + " is not a pass of the loop's body",
               pointer_to(loop.node->place, "controller"), did_you_mean(name, body));
   }

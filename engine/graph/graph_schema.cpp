@@ -28,7 +28,7 @@ json value_schema(const ParamSpec& spec) {
 }
 
 json standard_of(const ParamSpec& spec) {
-  return std::visit([](const auto& value) { return json(value); }, spec.standard);
+  return std::visit([](const auto& value) { return json(value); }, spec.default_value);
 }
 
 // Every parameter may be a variable instead.
@@ -52,7 +52,7 @@ std::vector<Declaration> variants(const Pass& pass) {
   };
   for (const ParamSpec& spec : specs) {
     if (!spec.from.empty()) continue;
-    if (spec.type == ParamType::flag) add(spec.name, !std::get<bool>(spec.standard));
+    if (spec.type == ParamType::flag) add(spec.name, !std::get<bool>(spec.default_value));
     for (const std::string& choice : spec.choices) add(spec.name, choice);
   }
   return result;
@@ -124,7 +124,7 @@ json loop_rule() {
               {"max",
                {{"anyOf", json::array({json{{"type", "integer"}, {"minimum", 1}, {"maximum", 65536}},
                                        json{{"$ref", "#/$defs/variable"}}})},
-                {"description", "most turns"}}},
+                {"description", "most iterations"}}},
               {"passes", {{"$ref", "#/$defs/passes"}}}}},
             {"required", {"controller", "max", "passes"}}};
   return {{"if", {{"properties", {{"type", {{"const", "loop"}}}}}}}, {"then", then}};

@@ -63,7 +63,8 @@ struct Port {
   bool is_buffer = false;
   bool array = false;     // GLSL sees a 2D array (layers); otherwise a plain 2D image
   bool optional = false;  // an input that may be left unconnected
-  bool kept = false;  // an output or transient that keeps its content from turn to turn and frame to frame
+  bool kept =
+      false;  // an output or transient that keeps its content from iteration to iteration and frame to frame
   bool omittable = false;  // an output that is not there when nobody reads it
   // Of an input that is a shadow map, or made of one: how far from a receiver's place in it texels are read
   // that count. Absent: anywhere.
@@ -157,8 +158,8 @@ class Declaration {
   // An image of this pass alone, aliased with others' like every intermediate.
   void transient(std::string name, Access access, bool array, ImageShape shape, std::string help);
 
-  // Of an image of its own: what one turn of a loop or one frame wrote, the next one finds. Undefined before
-  // the first write.
+  // Of an image of its own: what one iteration of a loop or one frame wrote, the next one finds. Undefined
+  // before the first write.
   void keep(std::string_view name);
 
   // Of an output: it need not be there when nobody reads it (Environment::connected).
@@ -179,8 +180,8 @@ class Declaration {
   bool is_connected(std::string_view input) const;
   // The source of `input` is not what this pass can read: "holds moments, not depth". Told with both nodes.
   void refuse_source(std::string_view input, std::string why);
-  // A value that `input`'s source decides (spec.standard): the pass and its shaders see it as a parameter; a
-  // graph file cannot set it.
+  // A value that `input`'s source decides (spec.default_value): the pass and its shaders see it as a
+  // parameter; a graph file cannot set it.
   void derived(std::string_view input, ParamSpec spec);
 
   // Readers of the image `output` may ask for what the buffer `input` of this pass is connected to, by that

@@ -52,7 +52,7 @@ struct Barrier {
   uint32_t resource = 0;
   Use before, after;
   bool discard = false;   // contents undefined before (first use of aliased or transient memory)
-  bool once = false;      // in a loop's body: only in the first turn (later ones: repeat_barriers)
+  bool once = false;      // in a loop's body: only in the first iteration (later ones: repeat_barriers)
   bool previous = false;  // of the copy of the frame before (Resource::history)
 };
 
@@ -81,8 +81,8 @@ struct LoopPlan {
   uint32_t first_segment = 0, last_segment = 0;  // [first, last) of Plan::segments
   uint32_t controller = 0;                       // index into Plan::nodes
   uint32_t max = 1;
-  // Before the second and later turns; the body's own barriers are then recorded again, except those marked
-  // once.
+  // Before the second and later iterations; the body's own barriers are then recorded again, except those
+  // marked once.
   std::vector<Barrier> repeat_barriers;
 };
 

@@ -49,7 +49,7 @@ class Culler {
     if (node.loop >= 0) mark(graph_.loops[node.loop].controller);
   }
 
-  // What the body modifies in place in one turn is what it reads in the next.
+  // What the body modifies in place in one iteration is what it reads in the next.
   void need_next_turn(int loop, const PortKey& key) {
     const auto found = modifiers_.find({loop, root_of(graph_, folding_, key)});
     if (found == modifiers_.end()) return;

@@ -90,7 +90,7 @@ class Heap {
 
 bool in_heap(const Resource& resource) { return resource.size > 0; }
 
-// In a loop everything is live from the first pass to the last: the next turn may read it again.
+// In a loop everything is live from the first pass to the last: the next iteration may read it again.
 void find_lifetimes(Plan& plan, const std::vector<LoopRange>& loops) {
   std::vector<char> used(plan.resources.size(), 0);
   for (uint32_t position = 0; position < plan.nodes.size(); ++position) {

@@ -153,7 +153,7 @@ class Writer {
     if (!plan_.loops.empty()) line("loops");
     for (const LoopPlan& loop : plan_.loops) {
       line("  " + loop.id + " segments " + range(loop.first_segment, loop.last_segment) + ", controller " +
-           plan_.nodes[loop.controller].id + ", at most " + std::to_string(loop.max) + " turns");
+           plan_.nodes[loop.controller].id + ", at most " + std::to_string(loop.max) + " iterations");
       barriers("", loop.repeat_barriers, "    ");
     }
   }

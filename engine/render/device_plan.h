@@ -54,7 +54,7 @@ class DevicePlan {
 
   void swap_history();  // between frames
   void forget();        // history is zero again, as before the first frame; between frames
-  // Records the barriers; those marked once only in a loop's first turn.
+  // Records the barriers; those marked once only in a loop's first iteration.
   void barriers(VkCommandBuffer commands, const std::vector<Barrier>& list, bool first_turn = true) const;
 
  private:

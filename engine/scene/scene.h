@@ -95,7 +95,7 @@ struct Light {  // shines along its local -z (spot, directional)
   bool moving = false;                  // some animation moves it
 };
 
-struct SceneWarnings {  // counted, so that a usable scene with flaws is used and its flaws are told
+struct SceneWarnings {  // counted, so that a usable scene with flaws is used and its flaws are reported
   uint64_t degenerate_triangles = 0, nonfinite_triangles = 0, duplicate_vertices = 0;
   std::vector<std::string> messages;  // one sentence each, file and place included
 };

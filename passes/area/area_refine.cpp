@@ -207,7 +207,7 @@ class AreaRefine : public Pass {
     }
   }
 
-  // --- a turn: new samples ---
+  // --- an iteration: new samples ---
 
   void sample(Context& c, uint32_t index) {
     LightState& light = lights_[index];
@@ -276,7 +276,7 @@ class AreaRefine : public Pass {
 
   static Extent pixels(const Context& c) { return c.shape("depth").extent; }
 
-  // --- a turn: questions ---
+  // --- an iteration: questions ---
 
   struct QuadPush {
     std::array<uint32_t, 4> slots;

@@ -34,7 +34,7 @@ uint32_t declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted) 
                   "a bit a sample: is the pixel on its silhouette (algorithm 6's discontinuity maps)");
   d.output("values", Access::storage_write, true, {pixels, slots, 1, VK_FORMAT_R8_UNORM},
            "a layer a sample: visibility of the pixels on its silhouette, undefined elsewhere");
-  d.keep("values");  // written turn by turn
+  d.keep("values");  // written iteration by iteration
   d.output_buffer("weights", kFromHost, {slots, 4, "float"}, "of each sample, in (6.4)");
   d.output_buffer("sample_ranges", kFromHost, {uint64_t(2) * d.setting().lights, 4, "uint"},
                   "of each light, its first slot and the number of its samples");

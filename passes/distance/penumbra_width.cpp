@@ -38,7 +38,7 @@ void set_penumbra_traits(Declaration& d, const std::string& output) {
 void read_penumbra_traits(Declaration& d, const std::string& input) {
   for (ParamSpec& spec : penumbra_specs()) {
     const Value* said = d.trait(input, spec.name);
-    if (said) spec.standard = *said;
+    if (said) spec.default_value = *said;
     if (!said && d.is_connected(input)) d.refuse_source(input, "does not say what penumbra it was made for");
     d.derived(input, std::move(spec));
   }

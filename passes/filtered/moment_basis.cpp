@@ -120,7 +120,7 @@ ParamSpec kernel_spec() {
 
 // What the source says; the spec's own value where it says nothing.
 void derive(Declaration& d, const std::string& input, ParamSpec spec) {
-  if (const Value* said = d.trait(input, spec.name)) spec.standard = *said;
+  if (const Value* said = d.trait(input, spec.name)) spec.default_value = *said;
   d.derived(input, std::move(spec));
 }
 
@@ -128,10 +128,10 @@ void derive(Declaration& d, const std::string& input, ParamSpec spec) {
 
 MomentLayout declare_basis(Declaration& d) {
   const auto choose = [&](const ParamSpec& s) {
-    return d.choice(s.name, std::get<std::string>(s.standard), s.choices, s.help);
+    return d.choice(s.name, std::get<std::string>(s.default_value), s.choices, s.help);
   };
   const auto number = [&](const ParamSpec& s) {
-    return d.number(s.name, std::get<double>(s.standard), s.min, s.max, s.unit, s.help);
+    return d.number(s.name, std::get<double>(s.default_value), s.min, s.max, s.unit, s.help);
   };
   const std::string basis = choose(basis_spec());
   const bool half = choose(precision_spec()) == "half";
@@ -144,7 +144,7 @@ MomentLayout declare_basis(Declaration& d) {
   if (basis == "exponential_variance_4")
     refuse_beyond(d, map_trait::kNegativeExponent, negative, limit, half);
   const ParamSpec series = terms_spec();
-  const int64_t terms = d.integer(series.name, std::get<int64_t>(series.standard), int64_t(series.min),
+  const int64_t terms = d.integer(series.name, std::get<int64_t>(series.default_value), int64_t(series.min),
                                   int64_t(series.max), series.unit, series.help);
   const uint32_t layers = basis == "fourier" ? uint32_t((terms + 1) / 2) : 1;
   return {format_of(basis, half), layers};

@@ -25,7 +25,7 @@ class StripFilter : public Pass {
  private:
   std::string shader_, soft_shader_;
   Pipeline classify_, list_y_, list_x_, along_x_, along_y_;
-  bool tiled_ = false;         // told which tiles are not plain
+  bool tiled_ = false;         // knows which tiles are not plain
   mutable bool soft_ = false;  // as declared: a width for each pixel
   float reference_depth_ = 1;  // world units
 };

@@ -165,11 +165,11 @@ class ShadowVolumes : public Pass {
 
   // One sentence a kind, naming every mesh once.
   static void warn_about_meshes(Environment& e) {
-    std::set<uint32_t> told;
+    std::set<uint32_t> reported;
     std::vector<std::string> open, double_sided, masked;
     for (const Draw& draw : e.gpu_scene().draws()) {
       const uint32_t index = e.scene().instances[draw.instance].mesh;
-      if (!told.insert(index).second) continue;
+      if (!reported.insert(index).second) continue;
       const std::string name = fmt::format("'{}'", e.scene().meshes[index].name);
       if (!draw.watertight) open.push_back(name);
       if (draw.watertight && draw.double_sided) double_sided.push_back(name);

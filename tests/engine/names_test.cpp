@@ -57,7 +57,7 @@ void add_ports(const std::string& type, Names& names) {
     return d.param_specs();
   };
   for (const ParamSpec& spec : add({})) {
-    if (spec.type == ParamType::flag && spec.from.empty()) add({{spec.name, !std::get<bool>(spec.standard)}});
+    if (spec.type == ParamType::flag && spec.from.empty()) add({{spec.name, !std::get<bool>(spec.default_value)}});
     if (spec.from.empty())
       for (const std::string& choice : spec.choices) add({{spec.name, choice}});
   }

@@ -278,7 +278,7 @@ bool in_shaders(const std::string& text, const ParamSpec& spec) {
 std::vector<Value> other_values(const ParamSpec& spec) {
   switch (spec.type) {
     case ParamType::flag:
-      return {!std::get<bool>(spec.standard)};
+      return {!std::get<bool>(spec.default_value)};
     case ParamType::integer:
       return {std::int64_t(spec.min), std::int64_t(spec.max)};
     case ParamType::number:
@@ -298,7 +298,7 @@ std::string shape_text(const Declaration& d) {
          << ' ' << p.buffer.stride << '\n';
   for (const Port& p : d.ports())
     for (const auto& [key, value] : p.traits) text << key << ' ' << to_string(value) << '\n';
-  for (const ParamSpec& s : d.param_specs()) text << s.name << ' ' << to_string(s.standard) << '\n';
+  for (const ParamSpec& s : d.param_specs()) text << s.name << ' ' << to_string(s.default_value) << '\n';
   return text.str();
 }
 
@@ -322,10 +322,10 @@ bool in_declaration(const std::string& type, const ParamSpec& spec) {
   };
   const auto others = other_values(spec);
   for (Values given : circumstances(type, spec.name)) {
-    const std::string standard = text(given);
+    const std::string by_default = text(given);
     for (const Value& v : others) {
       given[spec.name] = v;
-      if (text(given) != standard) return true;
+      if (text(given) != by_default) return true;
     }
   }
   return false;

@@ -151,5 +151,18 @@ TEST(SourceRules, FilesBeginWithWhatTheyAreFor) {
   }
 }
 
+// ----------------------------------------------------------------------------------------------- constants
+
+TEST(SourceRules, DISABLED_ConstantsOfNamespacesAreNamedAlike) {
+  const std::regex constant(
+      "(^|\n)(inline |static )*constexpr [^(={;]*\\b([A-Za-z_]\\w*)(\\[[^\\]]*\\])* ?[={]");
+  const std::regex name("k[A-Z][A-Za-z0-9]*");
+  for (const std::string& file : files(kProgram, kCode)) {
+    const std::string text = without_comments_and_strings(text_of(file));
+    for (std::sregex_iterator i(text.begin(), text.end(), constant), end; i != end; ++i)
+      EXPECT_TRUE(std::regex_match((*i)[3].str(), name)) << file << ": " << (*i)[3];
+  }
+}
+
 }  // namespace
 }  // namespace gnomon::rules

@@ -175,10 +175,10 @@ TEST(GpuReceiverPlane, slope_is_the_tangent_against_the_texels_and_is_clamped) {
       for (size_t i = 0; i < jobs.size(); i += 3) {
         const double clamped = std::min(slope, 20.0);
         EXPECT_NEAR(answers[i].slope, clamped, 2e-4 * clamped);
-        // Followed along the clamped slope: dz per lateral world unit, from the gradient of 1/z (-z^2) or z
-        // per texel.
+        // Followed along the clamped slope: dz per lateral world unit, from the gradient of post-projective
+        // depth per texel.
         const double z = 10, half_x = face.range.z, half_y = face.range.w, scale = face.info.y ? 1 : z;
-        const double per_value = face.info.y ? 1 : -z * z;
+        const double per_value = 1 / encode_slope(face, z, false);
         const glm::dvec2 dz(per_value * answers[i].gradient[0] * 1024 / (2 * half_x * scale),
                             per_value * answers[i].gradient[1] * 1024 / (2 * half_y * scale));
         EXPECT_NEAR(length(dz), clamped, 2e-4 * clamped);
@@ -189,8 +189,32 @@ TEST(GpuReceiverPlane, slope_is_the_tangent_against_the_texels_and_is_clamped) {
     }
 }
 
+// A plane in clip space is the plane times the inverse transpose of the projection, whatever that is.
+TEST(GpuReceiverPlane, gradient_is_that_of_the_plane_in_clip_space) {
+  const std::vector<GpuFace> faces{perspective_face(), orthographic_face()};
+  const auto jobs = random_jobs(faces, 0.1, 10, 400);
+  const auto answers = planes(faces, jobs);
+  for (size_t i = 0; i < jobs.size(); ++i) {
+    const GpuFace& face = faces[jobs[i].face];
+    LightView view;
+    view.orthographic = face.info.y != 0;
+    view.near = face.range.x, view.far = face.range.y;
+    view.half_width = face.range.z, view.half_height = face.range.w;
+    const glm::dvec3 n(jobs[i].n), q(jobs[i].q);
+    const glm::dvec4 plane = glm::inverse(glm::transpose(view.clip_from_light())) * glm::dvec4(n, -dot(n, q));
+    const glm::dvec2 gradient = -2.0 / 1024 * glm::dvec2(plane) / plane.z;
+    const double tolerance = 1e-4 * length(gradient);
+    EXPECT_NEAR(answers[i].gradient[0], gradient.x, tolerance);
+    EXPECT_NEAR(answers[i].gradient[1], gradient.y, tolerance);
+    // And the plane holds the receiver, at its depth.
+    const glm::dvec2 at = 2.0 * glm::dvec2(answers[i].texel[0], answers[i].texel[1]) / 1024.0 - 1.0;
+    const double depth = -(dot(glm::dvec2(plane), at) + plane.w) / plane.z;
+    EXPECT_NEAR(1.0 + answers[i].base, depth, 1e-4);
+  }
+}
+
 // The plane is moved towards the light, along the axis, by exactly the stated distance at the receiver, and
-// by a constant of the plane value (1/z, or z) elsewhere.
+// by a constant of post-projective depth elsewhere.
 TEST(GpuReceiverPlane, bias_shifts_by_world_units) {
   const std::vector<GpuFace> faces{perspective_face(), orthographic_face()};
   for (const float bias : {1e-3f, 0.02f, 0.3f}) {

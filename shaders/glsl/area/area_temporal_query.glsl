@@ -32,7 +32,7 @@ float caster_depth(ivec2 texel) {
 // caster's shadow and on the moving caster itself.
 bool meets_moving(Query query, ivec2 texel) {
 #ifdef MOVING_CASTERS
-  float biased = 1.0 / query.plane.base;  // perspective views: area lights are spots
+  float biased = far_distance(query.view, query.plane.base);
   query.plane = bias_receiver(query.view, query.plane, biased - query.plane.z);
   return query_depth(query, vec2(texel) + 0.5) > maps_at(texel, MOVING_LAYER).x;
 #else

@@ -100,7 +100,7 @@ float receiver_linear_depth(Query query, float level) {
   float half_width = 0.5 * (float(params.kernel) * exp2(level) - 1.0);
 #endif
   float z = receiver_depth(view, plane, plane.texel, true);
-  vec2 outwards = half_width * sign(plane.gradient) * (is_orthographic(view) ? 1.0 : -1.0);
+  vec2 outwards = half_width * sign(plane.gradient);
   float farthest = receiver_depth(view, plane, plane.texel + outwards, true);
   return clamp(z - params.bias_kernel * max(farthest - z, 0.0), 0.0, 1.0);
 }

@@ -2,7 +2,7 @@
 // algorithm 2). The text divides by w; the number of samples is w^2.
 //
 // A dispatch does a part of the kernel, a block of samples or, without reuse, a row of a block, and hands the sum on: wide
-// kernels with long walks would keep a device longer in one dispatch than drivers allow (lavapipe ends loops after 65535 turns
+// kernels with long walks would keep a device longer in one dispatch than drivers allow (lavapipe ends loops after 65535 iterations
 // in all). Samples are added in the same order either way.
 #include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"

@@ -32,7 +32,7 @@ struct Light {
 #define LIGHT_POINT 1.0
 #define LIGHT_DIRECTIONAL 2.0
 
-bool is_directional(Light light) { return told_directional(light.position.w == LIGHT_DIRECTIONAL); }
+bool is_directional(Light light) { return known_directional(light.position.w == LIGHT_DIRECTIONAL); }
 
 struct Instance {
   mat4 relative_from_object;

@@ -15,7 +15,7 @@ struct LightView {
 
 // Is a light directional that says `so` of itself? Where all are of one kind the engine says it, and the other kind's arithmetic
 // is left out.
-bool told_directional(bool so) {
+bool known_directional(bool so) {
 #if defined(NO_DIRECTIONAL_LIGHTS)
   return false;
 #elif defined(ALL_DIRECTIONAL_LIGHTS)
@@ -24,7 +24,7 @@ bool told_directional(bool so) {
   return so;
 #endif
 }
-bool is_orthographic(LightView view) { return told_directional(view.info.y != 0); }
+bool is_orthographic(LightView view) { return known_directional(view.info.y != 0); }
 
 // Point or (w = 0) direction in the view's frame.
 vec3 light_space(LightView view, vec4 p) { return vec3(dot(view.rows[0], p), dot(view.rows[1], p), dot(view.rows[2], p)); }

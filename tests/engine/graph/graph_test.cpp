@@ -266,7 +266,7 @@ std::vector<Bad> bad_graphs() {
        file_with(
            value_a +
            R"(, {"id": "l", "type": "loop", "controller": "b", "max": 0, "passes": [{"id": "b", "type": "t_value"}]})"),
-       {"/passes/1/max: 'max' is 0: must be an integer in 1..65536 turns"}},
+       {"/passes/1/max: 'max' is 0: must be an integer in 1..65536 iterations"}},
       {"loop in loop",
        file_with(
            value_a +

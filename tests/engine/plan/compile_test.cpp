@@ -380,7 +380,7 @@ segments
   2 passes 4..4
   3 passes 5..5
 loops
-  again segments 1..2, controller decide, at most 8 turns
+  again segments 1..2, controller decide, at most 8 iterations
     barrier #1 data.data: compute/storage_write -> compute/storage_read|storage_write
 final
   barrier #5 end.result: compute/storage_write/general -> transfer/transfer_read/transfer_source
