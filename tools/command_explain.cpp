@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/light/scene_facts.h"
 #include "engine/plan/compile.h"
+#include "engine/scene/wide_spot.h"
 #include "tools/cli.h"
 #include "tools/terminal.h"
 
@@ -33,7 +34,7 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
   Declaration::Setting setting;
   setting.viewport = size;
   setting.lights = static_cast<uint32_t>(scene.lights.size());
-  for (const Light& light : scene.lights) setting.light_types.push_back(light.type);
+  for (const Light& light : scene.lights) setting.light_types.push_back(view_type(light));
   setting.scene = scene_sizes(scene);
   return compile(
       graph, setting,

@@ -79,8 +79,8 @@ void add_reference(CLI::App& app, int& status) {
   add_light_scale(*command, options->light_scale);
   command->footer(
       R"(Channels: Y, light1.Y, ... visibility (0 umbra, 1 lit); domain, light1.domain, ... 0 where the
-error is counted, 1 no geometry, 2 faces away, 3 outside the light; Z depth along the view axis, P position
-relative to the eye, N geometric normal (world units).
+error is counted, 1 no geometry, 2 faces away, 3 outside the light, 4 edge-on to the light; Z depth along the
+view axis, P position relative to the eye, N geometric normal (world units).
 
 Example:
   gnomon reference fence --size 640x360 --out fence.exr)");

@@ -10,6 +10,7 @@
 #include "engine/light/light_view.h"
 #include "engine/scene/area_light.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/wide_spot.h"
 
 namespace gnomon {
 namespace {
@@ -247,7 +248,7 @@ std::vector<LightView> point_views(const Scene& scene, uint32_t index, uint32_t 
 // Without their ranges; of a directional light none, as all of its view is fitted.
 std::vector<LightView> unfitted_views(const Scene& scene, uint32_t index, uint32_t map_size,
                                       uint32_t border) {
-  switch (scene.lights[index].type) {
+  switch (view_type(scene.lights[index])) {
     case LightType::spot:
       return {spot_view(scene, index)};
     case LightType::point:

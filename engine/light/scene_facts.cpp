@@ -8,6 +8,7 @@
 #include "engine/scene/area_light.h"
 #include "engine/scene/mesh_clean.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/wide_spot.h"
 
 namespace gnomon {
 namespace {
@@ -64,7 +65,7 @@ Source source_of(const Light& light, const glm::dvec3& origin) {
       source.points.emplace_back(placed * glm::dvec4(p, 1.0));
   for (const glm::dvec3& p : source.points)
     source.radius = std::max(source.radius, glm::distance(p, glm::dvec3(placed[3])));
-  if (light.type == LightType::spot) source.half_tangent = std::tan(0.5 * light.map_fov);
+  if (light.type == LightType::spot && !is_cut(light)) source.half_tangent = std::tan(0.5 * light.map_fov);
   return source;
 }
 

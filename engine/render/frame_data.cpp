@@ -1,6 +1,7 @@
 // Fills the data that every shader sees: camera, lights and views.
 #include "engine/render/frame_data.h"
 #include "engine/light/light_view.h"
+#include "engine/scene/wide_spot.h"
 
 #include <cmath>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -72,7 +73,8 @@ std::vector<LightData> light_data(const Scene& scene, const glm::dvec3& eye) {
     const Light& light = scene.lights[i];
     LightData data{};
     relative_rows(glm::inverse(light.world_from_light), eye, data.rows);
-    const double type = light.type == LightType::spot ? 0 : light.type == LightType::point ? 1 : 2;
+    const bool wide = light.type == LightType::spot && view_type(light) == LightType::point;
+    const double type = wide ? 3 : light.type == LightType::spot ? 0 : light.type == LightType::point ? 1 : 2;
     data.position = glm::vec4(glm::dvec3(light.world_from_light[3]) - eye, type);
     data.direction =
         glm::vec4(-glm::normalize(glm::dvec3(light.world_from_light[2])), light.range.value_or(0.0));

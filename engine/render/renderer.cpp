@@ -13,6 +13,7 @@
 #include "engine/render/device_plan.h"
 #include "engine/render/environment.h"
 #include "engine/render/gpu_scene.h"
+#include "engine/scene/wide_spot.h"
 #include "engine/vulkan/handle.h"
 #include "engine/vulkan/readback.h"
 #include "engine/vulkan/timing.h"
@@ -111,7 +112,7 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
                                settings.memory,
                                {},
                                scene_sizes(*scene)};
-  for (const Light& light : scene->lights) setting.light_types.push_back(light.type);
+  for (const Light& light : scene->lights) setting.light_types.push_back(view_type(light));
   CompileOptions options;
   options.alias = settings.alias;
   options.keep_all = settings.keep_all;

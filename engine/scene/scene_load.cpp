@@ -8,6 +8,7 @@
 #include "engine/scene/gltf_file.h"
 #include "engine/scene/mesh_clean.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/scene_limits.h"
 #include "engine/scene/scene_nodes.h"
 #include "engine/scene/scene_primitive.h"
 
@@ -167,6 +168,7 @@ Scene load_scene(const std::filesystem::path& file) {
     scene.animation = animation;
   ensure_camera(scene);
   ensure_light(scene);
+  check_limits(scene);
   warn_enclosed_lights(scene);
   return scene;
 }

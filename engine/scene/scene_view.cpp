@@ -8,12 +8,12 @@
 #include "engine/scene/scene_area.h"
 #include "engine/scene/scene_lights_area.h"
 #include "engine/scene/scene_nodes.h"
+#include "engine/scene/wide_spot.h"
 
 namespace gnomon {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double widest_map = 169.0 / 180.0 * pi;  // of a spot's square frustum
 
 double radians(double degrees) { return degrees / 180.0 * pi; }
 

@@ -13,6 +13,7 @@
 #include "engine/base/parallel.h"
 #include "engine/base/sobol.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/wide_spot.h"
 #include "engine/truth/reference_light.h"
 #include "engine/truth/reference_tracer.h"
 
@@ -53,7 +54,8 @@ bool inside_light(const Light& light, const glm::dvec3& from_light) {
   if (light.type == LightType::point) return true;
   const glm::dvec3 p = glm::transpose(glm::dmat3(light.world_from_light)) * from_light;  // rigid
   const double depth = -p.z, half = std::tan(0.5 * light.map_fov) * depth;
-  if (depth <= 0 || std::abs(p.x) > half || std::abs(p.y) > half) return false;
+  const bool framed = depth > 0 && std::abs(p.x) <= half && std::abs(p.y) <= half;
+  if (!framed && !is_cut(light)) return false;
   return std::atan2(std::hypot(p.x, p.y), depth) <= light.outer_cone;
 }
 
@@ -75,23 +77,24 @@ uint32_t table_size(const Scene& scene, uint32_t samples) {
 
 class PixelShader {
  public:
-  PixelShader(const ReferenceTracer::Impl& tracer, uint32_t samples)
-      : tracer_(tracer), samples_(samples), sobol_(table_size(tracer.scene, samples)) {
-    for (const Light& light : tracer.scene.lights)
-      areas_.push_back(is_area(light, samples) ? std::optional<AreaSampler>(std::in_place, tracer.scene,
-                                                                            light, tracer.centre_of(light))
+  PixelShader(const Scene& scene, const RayScene& rays, uint32_t samples)
+      : scene_(scene), rays_(rays), samples_(samples), sobol_(table_size(scene, samples)) {
+    for (const Light& light : scene.lights)
+      areas_.push_back(is_area(light, samples) ? std::optional<AreaSampler>(std::in_place, scene, light,
+                                                                            centre_of(light, rays))
                                                : std::nullopt);
   }
 
   void shade(Reference& result, const SurfaceHit& hit, size_t pixel, NoiseSum& noise) const {
     for (uint32_t i = 0; i < result.lights; ++i) {
-      const Light& light = tracer_.scene.lights[i];
-      const ShadowTarget centre = tracer_.centre_of(light);
+      const Light& light = scene_.lights[i];
+      const ShadowTarget centre = centre_of(light, rays_);
       const glm::dvec3 to_light = centre.infinite ? centre.value : centre.value - hit.position;
       uint8_t& domain = result.domain[i][pixel];
       float& visibility = result.visibility[i][pixel];
-      if (!(glm::dot(hit.normal, to_light) > 0)) {
-        domain = Reference::faces_away;
+      const double facing = glm::dot(hit.normal, glm::normalize(to_light));
+      if (!(facing >= Reference::least_facing)) {
+        domain = facing > -Reference::least_facing ? Reference::edge_on : Reference::faces_away;
         visibility = 0;
         continue;
       }
@@ -99,7 +102,7 @@ class PixelShader {
       if (areas_[i]) {
         visibility = area_visibility(*areas_[i], hit, static_cast<uint32_t>(pixel), i, noise);
       } else {
-        visibility = tracer_.rays.occluded(hit.position, hit.normal, centre, hit.triangle) ? 0.0f : 1.0f;
+        visibility = rays_.occluded(hit.position, hit.normal, centre, hit.triangle) ? 0.0f : 1.0f;
       }
     }
   }
@@ -121,7 +124,7 @@ class PixelShader {
     const auto flush = [&] {
       if (count == 0) return;
       const uint32_t mask =
-          tracer_.rays.occluded(hit.position, hit.normal, targets, count, view.infinite(), hit.triangle);
+          rays_.occluded(hit.position, hit.normal, targets, count, view.infinite(), hit.triangle);
       for (int k = 0; k < count; ++k) {
         if ((mask >> k & 1) != 0) continue;
         lit[later[k]] += weight[k];
@@ -153,7 +156,8 @@ class PixelShader {
     return static_cast<float>(total / most);
   }
 
-  const ReferenceTracer::Impl& tracer_;
+  const Scene& scene_;
+  const RayScene& rays_;
   uint32_t samples_;
   SobolPoints sobol_;
   std::vector<std::optional<AreaSampler>> areas_;  // by light; nothing: a point
@@ -204,7 +208,14 @@ double noise_floor(const std::vector<NoiseSum>& rows, bool any_area, uint32_t sa
 
 bool is_area(const Light& light, uint32_t samples) { return samples > 0 && has_size(light); }
 
-ShadowTarget ReferenceTracer::Impl::centre_of(const Light& light) const {
+std::shared_ptr<const RayScene> ReferenceTracer::Impl::rays_of(const Camera& camera) const {
+  const glm::dvec3 eye(camera.world_from_camera[3]);
+  const std::lock_guard lock(mutex_);
+  if (!rays_ || rays_->origin() != eye) rays_ = std::make_shared<const RayScene>(scene, eye);
+  return rays_;
+}
+
+ShadowTarget centre_of(const Light& light, const RayScene& rays) {
   if (light.type == LightType::directional)
     return {glm::normalize(glm::dvec3(light.world_from_light[2])), true};
   return {glm::dvec3(light.world_from_light[3]) - rays.origin(), false};
@@ -222,13 +233,14 @@ Reference ReferenceTracer::trace(const ReferenceSettings& settings) const {
   Reference result =
       empty_reference(settings.width, settings.height, static_cast<uint32_t>(scene.lights.size()));
   result.samples = any_area ? settings.samples : 1;
-  const PrimaryRays primary(scene.cameras[settings.camera], impl_->rays.origin(), settings.width,
-                            settings.height);
-  const PixelShader shader(*impl_, any_area ? settings.samples : 0);
+  const Camera& camera = scene.cameras[settings.camera];
+  const std::shared_ptr<const RayScene> rays = impl_->rays_of(camera);
+  const PrimaryRays primary(camera, rays->origin(), settings.width, settings.height);
+  const PixelShader shader(scene, *rays, any_area ? settings.samples : 0);
   std::vector<NoiseSum> noise(settings.height);
   parallel_rows(settings.height, settings.progress, [&](uint32_t y) {
     for (uint32_t x = 0; x < settings.width; ++x) {
-      const auto hit = impl_->rays.first_hit(primary.eye, primary.direction(x, y), primary.near);
+      const auto hit = rays->first_hit(primary.eye, primary.direction(x, y), primary.near);
       if (!hit) continue;
       const size_t pixel = size_t{y} * settings.width + x;
       store_surface(result, *hit, primary.eye, pixel);

@@ -122,7 +122,8 @@ std::vector<bool> ReferenceTracer::away_from_edges(const Reference& reference, u
                                                    const Camera& camera, const std::vector<uint32_t>& pixels,
                                                    double texels, uint32_t map_size) const {
   const Scene& scene = impl_->scene;
-  const RayScene& rays = impl_->rays;
+  const std::shared_ptr<const RayScene> traced = impl_->rays_of(camera);
+  const RayScene& rays = *traced;
   if (light >= scene.lights.size() || light >= reference.lights)
     fail(fmt::format("no light {}: the scene has {}", light, scene.lights.size()), scene.file.string());
   if (map_size == 0 || !(texels >= 0))
@@ -132,7 +133,7 @@ std::vector<bool> ReferenceTracer::away_from_edges(const Reference& reference, u
   const glm::dvec3 eye = glm::dvec3(camera.world_from_camera[3]) - rays.origin();
   const auto offsets = disc(texels);
   const auto targets =
-      targets_of(scene.lights[light], impl_->centre_of(scene.lights[light]),
+      targets_of(scene.lights[light], centre_of(scene.lights[light], rays),
                  is_area(scene.lights[light], reference.samples > 1 ? reference.samples : 0));
 
   const auto is_away = [&](uint32_t pixel) {

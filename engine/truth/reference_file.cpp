@@ -218,7 +218,7 @@ Reference reference_from_image(const Image& image, const std::filesystem::path& 
   r.width = image.width, r.height = image.height;
   for (; r.lights == 0 || image.has(light_prefix(r.lights) + "Y"); ++r.lights) {
     r.visibility.push_back(reader.scalar(light_prefix(r.lights) + "Y", 0, 1));
-    const auto domain = reader.scalar(light_prefix(r.lights) + "domain", 0, 3);
+    const auto domain = reader.scalar(light_prefix(r.lights) + "domain", 0, Reference::edge_on);
     r.domain.emplace_back(domain.begin(), domain.end());
   }
   r.depth = reader.scalar("Z", 0, std::numeric_limits<float>::infinity());

@@ -15,8 +15,8 @@
 #include <algorithm>
 
 namespace gnomon {
-ImageShape declare_receiver(Declaration& d) {
-  const ImageShape depth = d.input("depth", Access::sampled, false, "the camera's device depth");
+ImageShape declare_receiver(Declaration& d, Access access) {
+  const ImageShape depth = d.input("depth", access, false, "the camera's device depth");
   d.input("geometric", Access::sampled, false, "octahedral geometric normal");
   d.input("shadow_map", Access::sampled, true, "depth from the light, a layer a view");
   d.input_behind("views", "shadow_map", Access::uniform, "what the map's layers show");

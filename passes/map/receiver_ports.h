@@ -15,7 +15,7 @@ namespace gnomon {
 // Inputs `depth`, `geometric`, `shadow_map` and, behind it, `views`; the map says `encoding`, `bias`,
 // `bias_constant`, `bias_slope`, `bias_normal` (map_traits.h). Returns the shape of a visibility image: one
 // layer a light.
-ImageShape declare_receiver(Declaration& d);
+ImageShape declare_receiver(Declaration& d, Access depth = Access::sampled);
 
 // Parameter `kernel`: width of a filter in the shadow map, odd, in texels.
 int64_t declare_kernel(Declaration& d);

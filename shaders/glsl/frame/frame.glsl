@@ -31,6 +31,9 @@ struct Light {
 #define LIGHT_SPOT 0.0
 #define LIGHT_POINT 1.0
 #define LIGHT_DIRECTIONAL 2.0
+#define LIGHT_WIDE_SPOT 3.0  // with a point light's views
+
+bool has_cone(Light light) { return light.position.w == LIGHT_SPOT || light.position.w == LIGHT_WIDE_SPOT; }
 
 bool is_directional(Light light) { return known_directional(light.position.w == LIGHT_DIRECTIONAL); }
 

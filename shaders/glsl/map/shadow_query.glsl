@@ -6,9 +6,8 @@
 // on them alone is uniform. `part`: of a pass that does its work in several dispatches.
 layout(push_constant) uniform Push { uint light, view; uvec2 part; } push;
 
-// `n`: geometric normal. `light` and `first_view` are those of push: whoever asks in a loop loads them before it.
-int make_query(ivec2 pixel, float device_depth, vec3 n, Light light, LightView first_view, out Query query) {
-  vec3 p = relative_position(pixel, device_depth);
+// Of a surface at `p`, `n` its geometric normal. `light` and `first_view` are those of push.
+int query_at(vec3 p, vec3 n, Light light, LightView first_view, out Query query) {
 #if LIGHT_VIEWS > 1
   query.layer = int(view_of(light, push.view, LIGHT_VIEWS, p));
   query.view = views[query.layer];
@@ -24,9 +23,14 @@ int make_query(ivec2 pixel, float device_depth, vec3 n, Light light, LightView f
   query.position = query.plane.texel;
   bool seen = view_sees(vec3(query.position / size, query.plane.z));
   query.plane = biased(view, query.plane, size);
-  if (is_background(device_depth)) return PIXEL_BACKGROUND;
   if (!faces_light(light, p, n)) return PIXEL_AWAY;
   return seen && in_range(light, p) ? PIXEL_INSIDE : PIXEL_OUTSIDE;
+}
+
+// Of what a pixel shows. Whoever asks in a loop loads `light` and `first_view` before it.
+int make_query(ivec2 pixel, float device_depth, vec3 n, Light light, LightView first_view, out Query query) {
+  int state = query_at(relative_position(pixel, device_depth), n, light, first_view, query);
+  return is_background(device_depth) ? PIXEL_BACKGROUND : state;
 }
 
 int make_query(ivec2 pixel, out Query query) {

@@ -44,7 +44,7 @@ LightView widest_view(int light) {
 // Does a map of a light with that widest view hold `p`? Beyond it nobody knows of shadows.
 bool in_map(Light light, LightView widest, vec3 p) {
 #if VIEWS_COUNT != LIGHT_COUNT
-  if (light.position.w == LIGHT_POINT) return true;  // its views see everything
+  if (light.position.w == LIGHT_POINT || light.position.w == LIGHT_WIDE_SPOT) return true;  // its views see everything
 #endif
   return holds(widest, p);
 }
