@@ -53,7 +53,7 @@ fs::path resource_root() {
     return root;
   }
   for (const fs::path& file : own_files())
-    if (const fs::path found = beside(file); !found.empty()) return found;
+    if (fs::path found = beside(file); !found.empty()) return found;
   for (const fs::path& folder : {offered(), fs::path(GNOMON_SOURCE_DIR)})
     if (!folder.empty() && has_resources(folder)) return folder;
   fail("the folder with assets/ and shaders/ is not beside the program", {}, {}, "set GNOMON_ROOT to it");
