@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "engine/base/error.h"
+#include "engine/base/printable.h"
 #include "engine/truth/reference.h"
 #include "engine/truth/reference_tracer.h"
 
@@ -185,9 +186,9 @@ std::optional<Reference> read_cached(const std::filesystem::path& file, const Sc
     if (reference.width == settings.width && reference.height == settings.height &&
         reference.lights == scene.lights.size())
       return reference;
-    spdlog::warn("{}: cached reference has another size: traced again", file.string());
+    spdlog::warn("{}: cached reference has another size: traced again", printable(file.string()));
   } catch (const Error& e) {
-    spdlog::warn("{}; traced again", e.what());
+    spdlog::warn("{}; traced again", printable(e.what()));
   }
   return std::nullopt;
 }
@@ -262,7 +263,7 @@ Reference cached_reference(const Scene& scene, const ReferenceSettings& settings
     std::filesystem::create_directories(cache, code);
     write_exr(file, to_image(reference));
   } catch (const Error& e) {  // the result is good even where the cache is not
-    spdlog::warn("{}; the reference is not cached", e.what());
+    spdlog::warn("{}; the reference is not cached", printable(e.what()));
   }
   return reference;
 }

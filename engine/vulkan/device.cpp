@@ -78,13 +78,35 @@ VkInstance bare_instance() {
   return instance;
 }
 
+struct ResultName {
+  VkResult result;
+  const char *name, *what;
+};
+constexpr ResultName results[] = {
+    {VK_ERROR_INITIALIZATION_FAILED, "VK_ERROR_INITIALIZATION_FAILED", "the driver cannot begin"},
+    {VK_ERROR_DEVICE_LOST, "VK_ERROR_DEVICE_LOST", "the device is lost: it crashed or took too long"},
+    {VK_ERROR_MEMORY_MAP_FAILED, "VK_ERROR_MEMORY_MAP_FAILED", "the device's memory cannot be mapped"},
+    {VK_ERROR_LAYER_NOT_PRESENT, "VK_ERROR_LAYER_NOT_PRESENT", "a layer is not installed"},
+    {VK_ERROR_EXTENSION_NOT_PRESENT, "VK_ERROR_EXTENSION_NOT_PRESENT", "an extension is missing"},
+    {VK_ERROR_FEATURE_NOT_PRESENT, "VK_ERROR_FEATURE_NOT_PRESENT", "a feature is missing"},
+    {VK_ERROR_INCOMPATIBLE_DRIVER, "VK_ERROR_INCOMPATIBLE_DRIVER", "the driver is too old"},
+    {VK_ERROR_TOO_MANY_OBJECTS, "VK_ERROR_TOO_MANY_OBJECTS", "there are too many objects of this kind"},
+    {VK_ERROR_FORMAT_NOT_SUPPORTED, "VK_ERROR_FORMAT_NOT_SUPPORTED", "the device has no such format"},
+    {VK_ERROR_FRAGMENTED_POOL, "VK_ERROR_FRAGMENTED_POOL", "a pool is fragmented"},
+    {VK_ERROR_OUT_OF_POOL_MEMORY, "VK_ERROR_OUT_OF_POOL_MEMORY", "a pool is exhausted"},
+    {VK_ERROR_UNKNOWN, "VK_ERROR_UNKNOWN", "the driver refuses without a reason"}};
+
 }  // namespace
 
 void check(VkResult result, const char* call) {
   if (result >= 0) return;
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
     fail(fmt::format("out of memory in {}", call), {}, {}, "use a smaller --size or shadow map");
-  fail(fmt::format("{} failed with VkResult {}", call, int(result)));
+  for (const auto& [known, name, what] : results)
+    if (known == result)
+      fail(fmt::format("{}: {} ({})", call, what, name), {}, {}, "another --device may do");
+  fail(fmt::format("{}: the driver fails with the unknown result {}", call, int(result)), {}, {},
+       "another --device may do");
 }
 
 Device::Device(const DeviceOptions& options) {
