@@ -11,6 +11,7 @@
 #include "engine/scene/animation.h"
 #include "engine/truth/reference.h"
 #include "tools/cli.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -45,9 +46,9 @@ void reference_command(const Options& options) {
   progress.done();
   if (options.out.has_parent_path()) std::filesystem::create_directories(options.out.parent_path());
   write_exr(options.out, to_image(reference));
-  fmt::print("{}: {}x{}, {} light{}, {} sample{} each, noise floor {:.2g}\n", options.out.string(),
-             reference.width, reference.height, reference.lights, reference.lights == 1 ? "" : "s",
-             reference.samples, reference.samples == 1 ? "" : "s", reference.noise_floor);
+  print("{}: {}x{}, {} light{}, {} sample{} each, noise floor {:.2g}\n", options.out.string(),
+        reference.width, reference.height, reference.lights, reference.lights == 1 ? "" : "s",
+        reference.samples, reference.samples == 1 ? "" : "s", reference.noise_floor);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "tools/cli.h"
 #include "tools/scene_generate.h"
 #include "tools/scene_info.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -41,8 +42,8 @@ void generate_command(const Options& options) {
     if (options.name != "all" && options.name != generator.name) continue;
     generate_scene(generator.name, out);
     const fs::path file = out / (generator.name + ".glb");
-    fmt::print("{:<16}{:>7} kB  {}\n", generator.name, fs::file_size(file) / 1000,
-               file.lexically_normal().string());
+    print("{:<16}{:>7} kB  {}\n", generator.name, fs::file_size(file) / 1000,
+          file.lexically_normal().string());
   }
 }
 
@@ -73,7 +74,7 @@ void add_scene(CLI::App& app, int& status) {
   info->add_option("FILE", options->file, "a .glb or .gltf file, or the name of a scene in assets/scenes")
       ->required();
   info->callback([options, &status] {
-    fmt::print("{}", describe_scene(load_scene(find_scene(options->file))));
+    print_lines(stdout, describe_scene(load_scene(find_scene(options->file))));
     status = exit_done;
   });
 }

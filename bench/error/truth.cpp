@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <future>
-#include <nlohmann/json.hpp>
 
 #include "bench/error/error_interval.h"
 #include "bench/error/measure.h"
@@ -49,7 +48,7 @@ const std::vector<std::vector<uint32_t>>& Truth::deep_umbra_of(const EdgeSetting
   return found->second;
 }
 
-std::string Truth::error_json(const Image& visibility, const Image* color, const Values& vars) const {
+MeasuredError Truth::error(const Image& visibility, const Image* color, const Values& vars) const {
   const EdgeSettings edges{&tracer_, camera_, map_size_of(vars)};
   // FLIP takes about as long as all the rest together, and shares nothing with it.
   std::future<double> flipped;
@@ -58,14 +57,13 @@ std::string Truth::error_json(const Image& visibility, const Image* color, const
         std::async(std::launch::async, [color, &truth = shaded()] { return flip(rgb_of(*color), truth); });
   MeasuredError error = measure_visibility(visibility, reference_, edges, deep_umbra_of(edges));
   if (color != nullptr) error.all.flip = flipped.get();
-  nlohmann::json object = to_json(error);
   std::vector<ComparedPlane> planes;
   for (uint32_t i = 0; i < reference_.lights; ++i)
     planes.push_back(
         {visibility.plane(visibility_channel(i)), reference_.visibility[i], reference_.domain[i]});
-  object["ci95"] = error_intervals(planes, reference_.width, reference_.height);
-  if (reference_.noise_floor > 0) object["reference_noise"] = reference_.noise_floor;
-  return object.dump();
+  error.intervals = error_intervals(planes, reference_.width, reference_.height);
+  if (reference_.noise_floor > 0) error.reference_noise = reference_.noise_floor;
+  return error;
 }
 
 const Image& Truth::shaded() const {

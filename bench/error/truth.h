@@ -24,10 +24,10 @@ class Truth {
   Truth(std::shared_ptr<const Scene> scene, const ReferenceSettings& settings,
         const std::filesystem::path& cache);
 
-  // The `error` object of a result row, as JSON text. `color`: the shaded image, for FLIP; may be nullptr.
+  // `color`: the shaded image, for FLIP; may be nullptr.
   // `vars`: of the graph; `shadow_map` is the map's side in texels that acne and leak are judged by (1024
   // when there is none).
-  std::string error_json(const Image& visibility, const Image* color, const Values& vars) const;
+  MeasuredError error(const Image& visibility, const Image* color, const Values& vars) const;
   const Reference& reference() const { return reference_; }
   const Image& shaded() const;  // shade_reference() of it
 

@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "engine/scene/animation.h"
 
 namespace gnomon {
 namespace {
-
-using nlohmann::json;
 
 constexpr double plane_tolerance = 1e-3;    // of the view depth
 constexpr double normal_tolerance = 0.906;  // cosine of 25 degrees
@@ -48,11 +45,6 @@ std::optional<Spread> spread_of(const std::vector<FrameResult>& frames, Figure f
   if (count == 0) return std::nullopt;
   spread.mean /= static_cast<double>(count);
   return spread;
-}
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(); }
-json to_json(const std::optional<Spread>& spread) {
-  return spread ? json{{"mean", number(spread->mean)}, {"max", number(spread->max)}} : json();
 }
 
 }  // namespace
@@ -112,7 +104,7 @@ FrameTruth SequenceTruth::make(uint32_t frame, const FrameTruth* before) const {
 
 void SequenceResult::add(const FrameTruth& truth, double frame_ms, const Image& visibility) {
   const Reference& reference = *truth.reference;
-  FrameResult frame{truth.seconds, frame_ms, measure_visibility(visibility, reference), {}};
+  FrameResult frame{truth.seconds, frame_ms, measure_visibility(visibility, reference)};
   if (reference_ != nullptr && !truth.before.empty()) {
     double sum = 0;
     size_t count = 0;
@@ -123,14 +115,14 @@ void SequenceResult::add(const FrameTruth& truth, double frame_ms, const Image& 
           {shown_.plane(name), reference_->visibility[light], reference_->domain[light]}, truth.before);
       if (change) sum += *change, ++count;
     }
-    if (count > 0) frame.flicker = sum / static_cast<double>(count);
+    if (count > 0) frame.error->flicker = sum / static_cast<double>(count);
   }
   frames_.push_back(std::move(frame));
   shown_ = visibility;
   reference_ = truth.reference;
 }
 
-void SequenceResult::add(double seconds, double frame_ms) { frames_.push_back({seconds, frame_ms, {}, {}}); }
+void SequenceResult::add(double seconds, double frame_ms) { frames_.push_back({seconds, frame_ms, {}}); }
 
 std::optional<Spread> SequenceResult::rmse() const {
   return spread_of(frames_, [](const FrameResult& f) {
@@ -139,22 +131,7 @@ std::optional<Spread> SequenceResult::rmse() const {
   });
 }
 std::optional<Spread> SequenceResult::flicker() const {
-  return spread_of(frames_, [](const FrameResult& f) { return f.flicker; });
-}
-
-json to_json(const SequenceResult& result) {
-  json frames = json::array();
-  for (const FrameResult& frame : result.frames()) {
-    json row = {{"time", frame.seconds}, {"frame_ms", frame.frame_ms}};
-    if (frame.error) row["error"] = to_json(*frame.error);
-    if (frame.flicker) row["error"]["flicker"] = number(*frame.flicker);
-    frames.push_back(std::move(row));
-  }
-  const auto flicker = result.flicker();
-  return {{"frames", frames},
-          {"sequence",
-           {{"frames", frames.size()}, {"rmse", to_json(result.rmse())}, {"flicker", to_json(flicker)}}},
-          {"flicker", flicker ? number(flicker->mean) : json()}};
+  return spread_of(frames_, [](const FrameResult& f) { return f.error ? f.error->flicker : std::nullopt; });
 }
 
 }  // namespace gnomon

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/error/measure.h"
-#include "bench/run/run_json.h"
+#include "bench/run/row.h"
 #include "engine/base/config.h"
 #include "engine/base/error.h"
 #include "engine/render/renderer.h"

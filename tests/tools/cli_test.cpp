@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -245,6 +246,71 @@ TEST_F(CliTest, CompareGivesTheFigures) {
   EXPECT_EQ(run("compare result.exr reference.exr --json").out.rfind("{", 0), 0u);
   EXPECT_EQ(run("compare result.exr reference.exr --json figures.json").status, 0);
   EXPECT_NE(read_text(folder_ / "figures.json").find("\"misclassified\": 0.125"), std::string::npos);
+}
+
+TEST_F(CliTest, CompareHasOneShapeForOneAndSeveralLights) {
+  Image two(4, 2, {"Y", "light1.Y"});
+  write_exr(folder_ / "one.exr", visibility_image(4, 2, 1));
+  write_exr(folder_ / "two.exr", two);
+  const auto figures = [&](const std::string& file) {
+    return nlohmann::json::parse(run("compare " + file + " " + file + " --json").out);
+  };
+  const auto one = figures("one.exr"), other = figures("two.exr");
+  EXPECT_EQ(one["lights"].size(), 1u);
+  EXPECT_EQ(other["lights"].size(), 2u);
+  EXPECT_EQ(one["rmse"], 0.0);
+  EXPECT_EQ(other["lights"][1]["rmse"], 0.0);
+}
+
+TEST_F(CliTest, CompareWithoutCountedPixelsSaysWhy) {
+  Image reference(4, 2, {"Y", "domain"});
+  for (float& x : reference.plane(1)) x = 2;  // all face away
+  write_exr(folder_ / "result.exr", visibility_image(4, 2, 1));
+  write_exr(folder_ / "reference.exr", reference);
+  const Outcome outcome = run("compare result.exr reference.exr --max-misclassified 0 --max-rmse 0");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_NE(outcome.out.find("no pixel counts: 8 face away from the light"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("misclassified     -\n"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << outcome.out;
+}
+
+TEST_F(CliTest, CheckGoesOnWhateverAFileDoes) {
+  std::ofstream(folder_ / "odd.gltf") << R"({"asset": 3, "scenes": "none", "nodes": {"a": null}})";
+  fs::copy_file(fs::path(GNOMON_TEST_SOURCE_DIR) / "assets" / "graphs" / "pcf.json", folder_ / "good.json");
+  const Outcome outcome = run("check odd.gltf torn.json good.json");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.error.find("odd.gltf"), std::string::npos) << outcome.error;
+  EXPECT_NE(outcome.out.find("good.json: ok"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.error.find("json.exception"), std::string::npos) << outcome.error;
+}
+
+TEST_F(CliTest, NamesCannotSteerTheTerminal) {
+  std::ofstream(folder_ / "odd.json")
+      << R"({"schema":1,"name":"x","passes":[{"id":"a\u001b[31m","type":"gb\nuffer\u001b]0;t\u0007"}],"outputs":{}})";
+  const Outcome outcome = run("check odd.json 'no\033[2J.json'");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.error.find('\x1b'), std::string::npos) << outcome.error;
+  EXPECT_EQ(outcome.error.find('\x07'), std::string::npos) << outcome.error;
+  EXPECT_NE(outcome.error.find("\\x1b"), std::string::npos) << outcome.error;
+}
+
+TEST_F(CliTest, WarningsOfTheCacheAreNotResults) {
+  fs::create_directories(folder_ / "cache");
+  const std::string command = "reference fence --size 16x9 --out x.exr";
+  const auto with_cache = [&] {
+    setenv("GNOMON_CACHE", (folder_ / "cache").c_str(), 1);
+    const Outcome outcome = run(command);
+    unsetenv("GNOMON_CACHE");
+    return outcome;
+  };
+  ASSERT_EQ(with_cache().status, 0);
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "cache"))
+    if (entry.path().extension() == ".exr") std::ofstream(entry.path()) << "broken";
+  const Outcome outcome = with_cache();
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(outcome.out.find("traced again"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.error.find("gnomon: warning: "), std::string::npos) << outcome.error;
 }
 
 TEST_F(CliTest, CompareRefusesWhatDoesNotMatch) {

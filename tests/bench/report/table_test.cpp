@@ -12,6 +12,12 @@ namespace {
 
 using nlohmann::json;
 
+std::string to_table(const std::vector<json>& objects) {
+  std::vector<Row> rows;
+  for (const json& one : objects) rows.push_back(row_from(one));
+  return gnomon::to_table(rows);
+}
+
 json row(const std::string& scene, const std::string& graph, int map, double misclassified, double ms,
          double ratio) {
   return {{"scene", scene},
@@ -106,7 +112,7 @@ TEST(Table, ColumnsLineUp) {
   }
 }
 
-TEST(Table, NoRowsGiveNoText) { EXPECT_EQ(to_table({}), ""); }
+TEST(Table, NoRowsGiveNoText) { EXPECT_EQ(gnomon::to_table(std::vector<Row>()), ""); }
 
 }  // namespace
 }  // namespace gnomon
