@@ -189,6 +189,8 @@ void Context::set_area(Extent extent) {
 void Context::set_cull(VkCullModeFlags mode) { vkCmdSetCullMode(commands_, mode); }
 
 void Context::bind_geometry() {
+  if (scene_.scene().meshes.empty())
+    fail(fmt::format("pass '{}' draws the scene, and there is none", node_.id));
   const VkBuffer buffers[] = {scene_.positions(), scene_.attributes()};
   const VkDeviceSize offsets[] = {0, 0};
   vkCmdBindVertexBuffers(commands_, 0, 2, buffers, offsets);

@@ -30,6 +30,27 @@ constexpr uint32_t kMaxSections = 4096;  // in one submission; further ones coun
 
 constexpr uint64_t kFenceTimeoutNs = 600ull * 1000 * 1000 * 1000;
 
+// Stands where there is no scene: nothing to see, for a camera and a light that have no say in the result.
+std::shared_ptr<const Scene> no_scene() {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.cameras.emplace_back();
+  scene.lights.emplace_back();
+  scene.bounds.add(glm::dvec3(0.0));
+  return std::make_shared<const Scene>(std::move(scene));
+}
+
+// Of such a scene nothing can be told.
+SceneFacts facts_of_nothing() {
+  SceneFacts facts;
+  facts.lights = 1;
+  facts.shadowless = {{}};
+  facts.light_moves = {false};
+  facts.light_size = {0};
+  facts.penumbra = {0};
+  return promising_nothing(facts);
+}
+
 }  // namespace
 
 // What lies between two stamps: a pass, or a part of one.
@@ -79,7 +100,7 @@ struct Renderer::Impl {
 
 Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, const Graph& graph,
                      const RenderSettings& r)
-    : device(std::move(d)), scene(std::move(s)), settings(r), gpu_scene(device, scene) {
+    : device(std::move(d)), scene(s ? std::move(s) : no_scene()), settings(r), gpu_scene(device, scene) {
   if (settings.camera >= scene->cameras.size())
     fail(fmt::format("the scene has {} camera(s), number {} is asked for", scene->cameras.size(),
                      settings.camera),
@@ -94,7 +115,8 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
   options.captures = settings.captures;
   options.memory = [this](const Resource& resource) { return device_need(device, resource); };
   const double aspect = camera.aspect.value_or(double(settings.width) / settings.height);
-  const SceneFacts facts_of_view = scene_facts(*scene, camera, aspect, settings.height);
+  const SceneFacts facts_of_view =
+      scene->meshes.empty() ? facts_of_nothing() : scene_facts(*scene, camera, aspect, settings.height);
   plan =
       compile(graph, setting, settings.keep_all ? promising_nothing(facts_of_view) : facts_of_view, options);
   gpu_scene.update(view(), 0, 0);

@@ -44,7 +44,8 @@ struct MemoryUse {
 
 class Renderer {
  public:
-  // Compiles the graph, its shaders and uploads the scene. Error for what cannot run here.
+  // Compiles the graph, its shaders and uploads the scene; without one (nullptr) for graphs whose passes draw
+  // none. Error for what cannot run here.
   Renderer(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, const Graph& graph,
            const RenderSettings& settings);
   ~Renderer();

@@ -584,6 +584,20 @@ std::string error_of(Make&& make) {
   return {};
 }
 
+TEST_F(GpuRenderer, GraphsThatDrawNoSceneNeedNone) {
+  Renderer with = renderer(chain()),
+           without(device(), nullptr, parse_graph(chain(), "test.json"), settings());
+  with.render(TimingMode::none);
+  without.render(TimingMode::none);
+  EXPECT_EQ(plane(without), plane(with));
+  const std::string draws =
+      file_with(R"({"id": "gbuffer", "type": "gbuffer"})", R"({"visibility": "gbuffer.depth"})");
+  const std::string message = error_of([&] {
+    Renderer(device(), nullptr, parse_graph(draws, "test.json"), settings()).render(TimingMode::none);
+  });
+  EXPECT_NE(message.find("pass 'gbuffer' draws the scene, and there is none"), std::string::npos) << message;
+}
+
 TEST_F(GpuRenderer, SizesThatTheDeviceCannotDo) {
   for (const auto& [w, h] : {std::pair{1u << 20, 16u}, {16u, 1u << 20}, {0xffffffffu, 0xffffffffu}}) {
     RenderSettings s = settings();
