@@ -44,6 +44,7 @@ const std::map<std::string, std::set<std::string>>& arrows() {
     a["bench"].insert({"engine/truth", "passes"});
     a["tools"] = a["bench"];
     a["tools"].insert("bench");
+    a["passes"].erase("engine/plan");
     return a;
   }();
   return allowed;
@@ -65,6 +66,22 @@ TEST(SourceRules, IncludesOnlyRunDown) {
       const std::string to = folder_of(path);
       EXPECT_TRUE(to == from || arrows().at(from).contains(to)) << file << " includes " << path;
     }
+  }
+}
+
+void add_included(const std::string& file, std::set<std::string>& all) {
+  for (const std::string& path : included(text_of(file)))
+    if (all.insert(path).second) add_included(path, all);
+}
+
+// A change of the compiler or the renderer must not compile every pass anew.
+TEST(SourceRules, PassesSeeNeitherPlanNorRenderer) {
+  std::set<std::string> all;
+  for (const std::string& file : files({"passes"}, kCode)) add_included(file, all);
+  EXPECT_TRUE(all.contains("engine/render/context.h"));
+  for (const std::string& path : all) {
+    EXPECT_FALSE(path.starts_with("engine/plan/")) << path;
+    EXPECT_FALSE(path == "engine/render/renderer.h" || path == "engine/render/device_plan.h") << path;
   }
 }
 
