@@ -97,7 +97,7 @@ void describe_graph(Row& row, const Graph& graph);
 void describe_renderer(Row& row, const Renderer& renderer);
 // Fills in the times that rounds gave.
 void describe_samples(Row& row, const Samples& samples);
-// Fills in the frames of a sequence and what is told over all of them.
+// Fills in the frames of a sequence and what is reported over all of them.
 void describe_sequence(Row& row, const SequenceResult& result);
 // Values that are NaN or infinite.
 uint64_t count_nonfinite(const Image& image);
