@@ -97,6 +97,7 @@ void describe_cameras(const Scene& scene, Out out) {
     fmt::format_to(out, "  {}: at {}, towards {}, {:.4g} degrees, near {:.4g}", camera.name,
                    text(position(camera.world_from_camera)), text(forward(camera.world_from_camera)),
                    degrees(camera.fov_y), camera.near);
+    if (camera.far) fmt::format_to(out, ", far {:.3g}", *camera.far);
     if (camera.aspect) fmt::format_to(out, ", aspect {:.4g}", *camera.aspect);
     fmt::format_to(out, "\n");
   }

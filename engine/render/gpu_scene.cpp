@@ -71,13 +71,16 @@ GpuImage upload_texture(const std::shared_ptr<Device>& device, const Texture& te
   return image;
 }
 
+VkSamplerAddressMode address_mode(Wrap wrap) {
+  if (wrap == Wrap::clamp) return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  return wrap == Wrap::mirror ? VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT : VK_SAMPLER_ADDRESS_MODE_REPEAT;
+}
+
 Handle<VkSampler> make_sampler(const std::shared_ptr<Device>& device, const Texture& texture) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = texture.nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-  info.addressModeU =
-      texture.repeat_u ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.addressModeV =
-      texture.repeat_v ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.addressModeU = address_mode(texture.wrap_u);
+  info.addressModeV = address_mode(texture.wrap_v);
   return create(device, vkCreateSampler, info, vkDestroySampler, "vkCreateSampler");
 }
 

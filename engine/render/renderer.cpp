@@ -13,6 +13,7 @@
 #include "engine/render/device_plan.h"
 #include "engine/render/environment.h"
 #include "engine/render/gpu_scene.h"
+#include "engine/scene/camera.h"
 #include "engine/vulkan/handle.h"
 #include "engine/vulkan/readback.h"
 #include "engine/vulkan/timing.h"
@@ -93,7 +94,8 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
   options.keep_all = settings.keep_all;
   options.captures = settings.captures;
   options.memory = [this](const Resource& resource) { return device_need(device, resource); };
-  const double aspect = camera.aspect.value_or(double(settings.width) / settings.height);
+  const double aspect = double(settings.width) / settings.height;
+  if (const std::string told = aspect_warning(camera, aspect); !told.empty()) warnings.push_back(told);
   const SceneFacts facts_of_view = scene_facts(*scene, camera, aspect, settings.height);
   plan =
       compile(graph, setting, settings.keep_all ? promising_nothing(facts_of_view) : facts_of_view, options);

@@ -18,6 +18,7 @@ struct PlacedNode {
   NodeTransform local;
   glm::dmat4 world_from_node{1.0};
   bool moving = false;  // some animation moves it; world_from_node is that of time 0
+  bool visible = true;  // no node above hides it, nor does it itself (KHR_node_visibility)
 };
 
 // Nodes of the default scene (the first scene, or all roots, when none is named), parents before children.

@@ -51,7 +51,7 @@ class LightReader {
   void read_node(const PlacedNode& placed) {
     const tinygltf::Node& node = gltf_.model.nodes[placed.node];
     const auto extension = node.extensions.find("KHR_lights_punctual");
-    if (extension == node.extensions.end()) return;
+    if (extension == node.extensions.end() || !placed.visible) return;
     const std::string place = at("/nodes", placed.node);
     const tinygltf::Value reference = member(extension->second, "light");
     const int index = reference.IsInt() ? reference.GetNumberAsInt() : -1;
@@ -201,6 +201,10 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
       camera.near = view.znear;
     else
       scene.warnings.messages.push_back(place + "znear is not above 0, 0.1 is used");
+    if (std::isfinite(view.zfar) && view.zfar > camera.near)
+      camera.far = view.zfar;
+    else if (view.zfar != 0.0)
+      scene.warnings.messages.push_back(place + "zfar is not above znear, nothing is cut off");
     if (std::isfinite(view.aspectRatio) && view.aspectRatio > 0) camera.aspect = view.aspectRatio;
     scene.cameras.push_back(std::move(camera));
   }

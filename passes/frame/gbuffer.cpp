@@ -37,6 +37,7 @@ class GBuffer : public Pass {
     state.depth_test = state.depth_write = true;
     state.depth_compare = e.settings().reversed_z ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
     far_ = e.settings().reversed_z ? 0.0f : 1.0f;
+    if (e.gpu_scene().camera().far) state.defines.emplace_back("FAR_PLANE", "1");
     pipelines_.opaque = e.raster(state);
     state.defines.emplace_back("MASKED", "1");
     pipelines_.masked = e.raster(state);

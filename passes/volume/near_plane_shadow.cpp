@@ -12,8 +12,7 @@ using Points = std::vector<glm::dvec3>;
 // The eye and the near plane's corners, a little enlarged so that rounding never decides.
 Points near_pyramid(const Camera& camera, double aspect) {
   constexpr double kMargin = 1.01;
-  const double y = kMargin * camera.near * std::tan(0.5 * camera.fov_y),
-               x = y * camera.aspect.value_or(aspect);
+  const double y = kMargin * camera.near * half_extent(camera, aspect).y, x = y * aspect;
   const double z = -kMargin * camera.near;
   Points points;
   for (const glm::dvec3 p : {glm::dvec3(0.0), {-x, -y, z}, {x, -y, z}, {-x, y, z}, {x, y, z}})

@@ -32,6 +32,9 @@ vec3 geometric_normal(Instance instance) {
 }
 
 void main() {
+#ifdef FAR_PLANE  // the projection's is infinitely far
+  if (gl_FragCoord.w * frame.depth.z < 1.0) discard;
+#endif
   Instance instance = instances[push.instance];
   Material material = materials[push.material];
   vec4 color = material.base_color * in_color * texture(base_color_texture, in_uv);
