@@ -235,7 +235,9 @@ TEST(WebpTextures, AreDecoded) {
   EXPECT_EQ(scene.textures[0].width, 2u);
   for (size_t i = 0; i < 4; ++i) {  // colours of transparent texels are not kept
     EXPECT_EQ(scene.textures[0].rgba[4 * i + 3], texels[4 * i + 3]) << i;
-    if (texels[4 * i + 3] > 0) EXPECT_EQ(scene.textures[0].rgba[4 * i + 2], texels[4 * i + 2]) << i;
+    if (texels[4 * i + 3] > 0) {
+      EXPECT_EQ(scene.textures[0].rgba[4 * i + 2], texels[4 * i + 2]) << i;
+    }
   }
   draft.document["bufferViews"].back()["byteLength"] = size - 8;
   EXPECT_TRUE(warns(load(draft), "cannot be read"));
