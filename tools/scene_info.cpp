@@ -106,8 +106,13 @@ void describe_cameras(const Scene& scene, Out out) {
 void describe_animation(const Scene& scene, Out out) {
   if (!scene.animation) return;
   const Animation& moving = *scene.animation;
-  fmt::format_to(out, "animation: {:.4g} s, moves {} instances, {} cameras, {} lights\n", duration(moving),
+  fmt::format_to(out, "animation: {:.4g} s, moves {} instances, {} cameras, {} lights", duration(moving),
                  moving.instances.size(), moving.cameras.size(), moving.lights.size());
+  if (const size_t count = moving.deformations.size()) fmt::format_to(out, "; the shape of {} meshes", count);
+  if (const size_t count = moving.changing_lights.size())
+    fmt::format_to(out, "; the intensity of {} lights", count);
+  if (const size_t count = moving.changing_materials.size()) fmt::format_to(out, "; {} materials", count);
+  fmt::format_to(out, "\n");
 }
 
 void describe_warnings(const SceneWarnings& warnings, Out out) {

@@ -97,6 +97,8 @@ std::vector<InstanceData> instance_data(const Scene& scene, const std::vector<ui
   for (const Instance& instance : scene.instances) {
     InstanceData data{};
     data.relative_from_object = glm::mat4(glm::translate(glm::dmat4(1.0), -eye) * instance.world_from_object);
+    // Hidden: all vertices in one point, so that no pass draws anything of it.
+    if (!instance.visible) data.relative_from_object = glm::mat4(0.0f), data.relative_from_object[3].w = 1.0f;
     const glm::dmat3 linear(instance.world_from_object);
     // The cofactor matrix turns normals rightly for every scale, and its sign follows a mirrored instance's
     // winding.

@@ -2,6 +2,7 @@
 #include "engine/scene/gltf_accessor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -196,6 +197,22 @@ std::vector<glm::vec4> read_vectors(const GltfFile& gltf, int index, const std::
   read_sparse(gltf, accessor, values.size(), layout.element(), place,
               [&](uint32_t i, const unsigned char* bytes) { values[i] = element_at(bytes, layout, fill); });
   return values;
+}
+
+std::vector<glm::dmat4> read_matrices(const GltfFile& gltf, int index, const std::string& place) {
+  const tinygltf::Accessor& accessor = find_accessor(gltf, index, place);
+  if (accessor.type != TINYGLTF_TYPE_MAT4 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+    fail("accessor " + std::to_string(index) + " must hold 4 x 4 matrices of floats", gltf.file, place);
+  const Strided from = view_elements(gltf, accessor.bufferView, accessor.byteOffset, accessor.count,
+                                     16 * sizeof(float), place);
+  std::vector<glm::dmat4> matrices(from.count);
+  for (size_t i = 0; i < from.count; ++i)
+    for (int k = 0; k < 16; ++k) {
+      const float value = load<float>(from.data + i * from.stride + sizeof(float) * static_cast<size_t>(k));
+      if (!std::isfinite(value)) fail("matrix " + std::to_string(i) + " is not finite", gltf.file, place);
+      matrices[i][k / 4][k % 4] = value;
+    }
+  return matrices;
 }
 
 std::vector<uint32_t> read_indices(const GltfFile& gltf, int index, const std::string& place,

@@ -24,7 +24,8 @@ constexpr std::array kRead = {"KHR_lights_punctual",
                               "EXT_meshopt_compression",
                               "KHR_meshopt_compression",
                               "KHR_draco_mesh_compression",
-                              "EXT_texture_webp"};
+                              "EXT_texture_webp",
+                              "KHR_animation_pointer"};
 
 struct Ignored {
   const char* name;
@@ -52,7 +53,6 @@ constexpr std::array kIgnored = {
     Ignored{"KHR_texture_basisu", kImage},
     Ignored{"MSFT_texture_dds", kImage},
     Ignored{"EXT_texture_avif", kImage},
-    Ignored{"KHR_animation_pointer", kPose},
     Ignored{"MSFT_lod", "coarser levels of detail; shadows are those of the finest"},
     Ignored{"EXT_lights_image_based", "light from all around; shadows stay the same"},
     Ignored{"EXT_lights_ies", "the distribution of a light; shadows stay the same"},

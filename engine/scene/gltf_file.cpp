@@ -113,6 +113,15 @@ tinygltf::Model parse_model(Json& document, const std::string& file, SceneWarnin
       if (!accessor.contains("bufferView")) accessor["bufferView"] = views, lent = true;
   if (lent) document["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
 
+  // Channels of KHR_animation_pointer have no node, which tinygltf leaves out.
+  if (document.contains("animations"))
+    for (Json& animation : document["animations"])
+      if (animation.contains("channels") && animation["channels"].is_array())
+        for (Json& channel : animation["channels"])
+          if (channel.is_object() && channel.contains("target") && channel["target"].is_object() &&
+              !channel["target"].contains("node"))
+            channel["target"]["node"] = -1;
+
   tinygltf::TinyGLTF loader;
   tinygltf::Model model;
   std::string error, warning;

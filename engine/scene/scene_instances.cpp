@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/gltf_accessor.h"
+#include "engine/scene/gltf_deformation.h"
 #include "engine/scene/mesh_clean.h"
 #include "engine/scene/scene_primitive.h"
 
@@ -81,6 +82,10 @@ double regularity(const glm::dmat3& m) {
   return lengths > 0 ? std::abs(glm::determinant(m)) / lengths : 0.0;
 }
 
+bool may_deform(const tinygltf::Primitive& primitive, const tinygltf::Node& node) {
+  return !primitive.targets.empty() || (node.skin >= 0 && primitive.attributes.count("JOINTS_0") > 0);
+}
+
 // Places the primitives of mesh nodes; reads each primitive once and shares it between its instances.
 class InstanceReader {
  public:
@@ -92,35 +97,38 @@ class InstanceReader {
     for (size_t n = 0; n < nodes.size(); ++n) {
       const PlacedNode& placed = nodes[n];
       const tinygltf::Node& node = gltf_.model.nodes[placed.node];
-      if (node.mesh < 0 || !placed.visible) continue;
+      if (node.mesh < 0 || !placed.ever_visible) continue;
       if (static_cast<size_t>(node.mesh) >= gltf_.model.meshes.size())
         fail("no mesh " + std::to_string(node.mesh) + "; there are " +
                  std::to_string(gltf_.model.meshes.size()),
              gltf_.file, at(at("/nodes", placed.node), "mesh"));
       const auto mesh = static_cast<size_t>(node.mesh);
       const std::vector<glm::dmat4> copies = read_copies(gltf_, placed.node);
-      for (size_t i = 0; i < gltf_.model.meshes[mesh].primitives.size(); ++i)
-        for (const glm::dmat4& copy : copies) place(mesh, i, placed, n, copy);
+      for (size_t i = 0; i < gltf_.model.meshes[mesh].primitives.size(); ++i) {
+        if (may_deform(gltf_.model.meshes[mesh].primitives[i], node) &&
+            place_deformed(mesh, i, nodes, n, copies))
+          continue;
+        const std::optional<uint32_t> shape = read(mesh, i);
+        for (const glm::dmat4& copy : copies)
+          if (shape) place(*shape, placed, n, copy);
+      }
     }
   }
 
  private:
   // `index`: of `placed`.
-  void place(size_t mesh, size_t primitive, const PlacedNode& placed, size_t index,
-             glm::dmat4 node_from_object) {
-    const std::optional<uint32_t> shape = read(mesh, primitive);
-    if (!shape) return;
+  void place(uint32_t shape, const PlacedNode& placed, size_t index, glm::dmat4 node_from_object) {
     if (scene_.instances.size() >= max_instances)
       fail("more than " + std::to_string(max_instances) + " instances", gltf_.file,
            at("/nodes", placed.node));
     const std::string& name = gltf_.model.nodes[placed.node].name;
-    Instance instance{name.empty() ? scene_.meshes[*shape].name : name, *shape,
-                      placed.world_from_node * node_from_object, placed.moving, true};
+    Instance instance{name.empty() ? scene_.meshes[shape].name : name, shape,
+                      placed.world_from_node * node_from_object, placed.moving, placed.visible};
     const glm::dmat3 axes(instance.world_from_object);
     if (regularity(axes) < 1e-9) {
       if (!flatten(instance, placed.node)) return;
     } else if (glm::determinant(axes) < 0) {
-      instance.mesh = mirror(*shape);
+      instance.mesh = mirror(shape);
       instance.world_from_object[0] = -instance.world_from_object[0];
       node_from_object[0] = -node_from_object[0];
     }
@@ -128,6 +136,92 @@ class InstanceReader {
       animation_->instances.push_back(
           {static_cast<uint32_t>(scene_.instances.size()), index, node_from_object});
     scene_.instances.push_back(std::move(instance));
+  }
+
+  // A mesh of its own for a node whose morph targets or skin shape it; false when nothing does. It moves when
+  // some animation changes its shape.
+  bool place_deformed(size_t mesh, size_t primitive, const std::vector<PlacedNode>& nodes, size_t index,
+                      const std::vector<glm::dmat4>& copies) {
+    std::optional<Mesh> raw = read_raw_primitive(gltf_, mesh, primitive, scene_.warnings);
+    if (!raw) return true;
+    std::optional<Deformation> deformation =
+        read_deformation(gltf_, nodes, index, primitive, *raw, scene_.warnings);
+    if (!deformation) return false;
+    const PlacedNode& placed = nodes[index];
+    const bool skinned = !deformation->joints.empty();
+    // A skin stands where its first joint does, so that far origins lose no digits.
+    PlacedNode place_of_skin{placed.node, {}, {}, glm::dmat4(1.0), false, true, placed.visible, true, false};
+    if (skinned) {
+      place_of_skin.world_from_node[3] = nodes[deformation->joints[0].node].world_from_node[3];
+      deformation->mesh_from_world = glm::inverse(place_of_skin.world_from_node);
+    }
+    const bool mirrors = !skinned && glm::determinant(glm::dmat3(placed.world_from_node)) < 0;
+    if (mirrors) mirror(*raw, *deformation);
+    std::vector<uint32_t> origins;
+    const bool moving = deforms(*deformation, nodes);
+    const Shape shape = first_shape(*deformation, nodes, raw->indices);
+    raw->positions = shape.positions;
+    if (!raw->normals.empty()) raw->normals = shape.normals;
+    if (!clean_primitive(gltf_, mesh, primitive, *raw, moving ? &origins : nullptr, scene_.warnings))
+      return true;
+    deformation->mesh = add(std::move(*raw));
+    const uint32_t first = static_cast<uint32_t>(scene_.instances.size());
+    glm::dmat4 unmirrored(1.0);
+    if (mirrors) unmirrored[0] = -unmirrored[0];
+    if (skinned)
+      place(deformation->mesh, place_of_skin, index, glm::dmat4(1.0));
+    else
+      for (const glm::dmat4& copy : copies) place(deformation->mesh, placed, index, copy * unmirrored);
+    if (!moving) return true;
+    for (size_t i = first; i < scene_.instances.size(); ++i) scene_.instances[i].moving = true;
+    follow(*deformation, origins);
+    animation_->deformations.push_back(std::move(*deformation));
+    return true;
+  }
+
+  bool deforms(const Deformation& deformation, const std::vector<PlacedNode>& nodes) const {
+    if (animation_ == nullptr) return false;
+    if (deformation.node && !deformation.targets.empty() && animation_->nodes[*deformation.node].weights)
+      return true;
+    return std::any_of(deformation.joints.begin(), deformation.joints.end(),
+                       [&](const Joint& joint) { return nodes[joint.node].moving; });
+  }
+
+  // At time 0.
+  Shape first_shape(const Deformation& deformation, const std::vector<PlacedNode>& nodes,
+                    const std::vector<uint32_t>& indices) const {
+    std::vector<glm::dmat4> world;
+    for (const PlacedNode& placed : nodes) world.push_back(placed.world_from_node);
+    if (animation_ != nullptr) return shape_at(deformation, *animation_, world, 0, indices);
+    std::vector<glm::dmat4> joints;
+    for (const Joint& joint : deformation.joints) joints.push_back(world[joint.node]);
+    return shape_of(deformation, deformation.weights, joints, indices);
+  }
+
+  static void mirror(Mesh& mesh, Deformation& deformation) {
+    mesh = mirrored(mesh);
+    deformation.positions = mesh.positions, deformation.normals = mesh.normals;
+    for (MorphTarget& target : deformation.targets) {
+      for (glm::vec3& p : target.positions) p.x = -p.x;
+      for (glm::vec3& n : target.normals) n.x = -n.x;
+    }
+  }
+
+  // Cleaning has moved the mesh's vertices.
+  static void follow(Deformation& deformation, const std::vector<uint32_t>& origins) {
+    const auto pick = [&](auto& values, size_t each) {
+      if (values.empty()) return;
+      auto kept = values;
+      kept.clear();
+      for (const uint32_t origin : origins)
+        for (size_t k = 0; k < each; ++k) kept.push_back(values[origin * each + k]);
+      values = std::move(kept);
+    };
+    pick(deformation.positions, 1);
+    pick(deformation.normals, 1);
+    for (MorphTarget& target : deformation.targets) pick(target.positions, 1), pick(target.normals, 1);
+    pick(deformation.joint_of, deformation.influences);
+    pick(deformation.weight_of, deformation.influences);
   }
 
   std::optional<uint32_t> read(size_t mesh, size_t primitive) {

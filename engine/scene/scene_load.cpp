@@ -40,18 +40,31 @@ void drop_unused_meshes(Scene& scene) {
   }
   if (told > most) hint += "; and " + std::to_string(told - most) + " more";
   const bool hidden = std::any_of(nodes.begin(), nodes.end(), [&](const PlacedNode& placed) {
-    return !placed.visible && gltf.model.nodes[placed.node].mesh >= 0;
+    return !placed.ever_visible && gltf.model.nodes[placed.node].mesh >= 0;
   });
   if (hidden) hint += std::string(hint.empty() ? "" : "; ") + "nodes are hidden by KHR_node_visibility";
   fail("no triangles: no node of the scene places a mesh with triangles that have an area", gltf.file,
        "/scenes", hint);
 }
 
+// Materials that change: their values at rest, and where they are at time 0.
+void start_materials(Scene& scene, Animation& animation) {
+  for (ChangingMaterial& changing : animation.changing_materials) {
+    Material& material = scene.materials[changing.material];
+    changing.base_color = material.base_color;
+    changing.alpha_cutoff = material.alpha_cutoff;
+    if (changing.color)
+      material.base_color = glm::clamp(glm::vec4(values_at(*changing.color, 0)), 0.0f, 1.0f);
+    if (changing.cutoff) material.alpha_cutoff = static_cast<float>(values_at(*changing.cutoff, 0).x);
+  }
+}
+
 Bounds world_bounds(const Scene& scene) {
   Bounds bounds;
   for (const Instance& instance : scene.instances)
-    for (const glm::vec3& p : scene.meshes[instance.mesh].positions)
-      bounds.add(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(p), 1.0)));
+    if (instance.visible)
+      for (const glm::vec3& p : scene.meshes[instance.mesh].positions)
+        bounds.add(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(p), 1.0)));
   return bounds;
 }
 
@@ -69,16 +82,17 @@ Scene load_scene(const std::filesystem::path& file) {
   scene.name = file.stem().string();
   const GltfFile gltf = read_gltf(file, scene.warnings);
   std::vector<PlacedNode> nodes = walk_nodes(gltf, scene.warnings);
-  const std::shared_ptr<Animation> animation = read_animation(gltf, nodes, scene.warnings);
+  const GltfAnimation tracks = read_animation(gltf, nodes, scene.warnings);
+  const std::shared_ptr<Animation>& animation = tracks.animation;
   read_materials(gltf, scene);
+  if (animation) start_materials(scene, *animation);
   read_instances(gltf, nodes, scene, animation.get());
   drop_unused_meshes(scene);
   if (scene.instances.empty()) fail_without_triangles(gltf, nodes, scene.warnings);
   scene.bounds = world_bounds(scene);
   read_cameras(gltf, nodes, scene, animation.get());
-  read_lights(gltf, nodes, scene, animation.get());
-  if (animation && !(animation->instances.empty() && animation->cameras.empty() && animation->lights.empty()))
-    scene.animation = animation;
+  read_lights(gltf, nodes, scene, animation.get(), tracks.intensities);
+  if (animation && !is_idle(*animation)) scene.animation = animation;
   ensure_camera(scene);
   ensure_light(scene);
   warn_enclosed_lights(scene);

@@ -109,9 +109,9 @@ std::vector<PlacedNode> walk_nodes(const GltfFile& gltf, SceneWarnings& warnings
     const NodeTransform local = local_transform(gltf, index, warnings);
     const glm::dmat4 to_parent = local.parent_from_node();
     const glm::dmat4 world = pending.parent ? placed[*pending.parent].world_from_node * to_parent : to_parent;
-    const bool visible =
-        shows_itself(gltf.model.nodes[index]) && (!pending.parent || placed[*pending.parent].visible);
-    placed.push_back({index, pending.parent, local, world, false, visible});
+    const bool itself = shows_itself(gltf.model.nodes[index]);
+    const bool visible = itself && (!pending.parent || placed[*pending.parent].visible);
+    placed.push_back({index, pending.parent, local, world, false, itself, visible, visible, false});
     for (int i = 0; i < 16; ++i)
       if (!std::isfinite(world[i / 4][i % 4]))
         fail("its transform to the world is not finite", gltf.file, at("/nodes", index));

@@ -120,16 +120,13 @@ bool skip_primitive(const GltfFile& gltf, const tinygltf::Primitive& primitive, 
   if (mode == TINYGLTF_MODE_POINTS) return warn("points are left out: they have no area"), true;
   if (mode >= 0 && mode < TINYGLTF_MODE_TRIANGLES) return warn("lines are left out: they have no area"), true;
   if (attribute(primitive, "POSITION") == nullptr) return warn("no POSITION, left out"), true;
-  if (!primitive.targets.empty()) warn("morph targets are ignored");
-  if (attribute(primitive, "JOINTS_0") != nullptr)
-    warn("skinning is ignored: the mesh stays in its bind pose");
   return false;
 }
 
 }  // namespace
 
-std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh_index, size_t primitive_index,
-                                   SceneWarnings& warnings) {
+std::optional<Mesh> read_raw_primitive(const GltfFile& gltf, size_t mesh_index, size_t primitive_index,
+                                       SceneWarnings& warnings) {
   const tinygltf::Mesh& source = gltf.model.meshes[mesh_index];
   const tinygltf::Primitive& primitive = source.primitives[primitive_index];
   const std::string place = place_of(mesh_index, primitive_index);
@@ -146,8 +143,15 @@ std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh_index, size
          gltf.file, at(place, "material"));
   mesh.material =
       primitive.material < 0 ? static_cast<uint32_t>(materials) : static_cast<uint32_t>(primitive.material);
+  return mesh;
+}
 
-  const DroppedTriangles dropped = drop_bad_triangles(mesh);
+bool clean_primitive(const GltfFile& gltf, size_t mesh_index, size_t primitive_index, Mesh& mesh,
+                     std::vector<uint32_t>* origins, SceneWarnings& warnings) {
+  const tinygltf::Primitive& primitive = gltf.model.meshes[mesh_index].primitives[primitive_index];
+  const std::string place = place_of(mesh_index, primitive_index);
+  const DroppedTriangles dropped =
+      origins != nullptr ? drop_bad_triangles(mesh, *origins) : drop_bad_triangles(mesh);
   warnings.degenerate_triangles += dropped.degenerate;
   warnings.nonfinite_triangles += dropped.nonfinite;
   if (dropped.degenerate > 0)
@@ -156,16 +160,25 @@ std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh_index, size
   if (dropped.nonfinite > 0)
     warnings.messages.push_back(gltf.file + ": " + place + ": dropped " + std::to_string(dropped.nonfinite) +
                                 " triangles with NaN or infinite vertices");
-  if (mesh.indices.empty()) return {};
-  if (mesh.normals.empty())
-    make_flat_normals(mesh);
-  else
+  if (mesh.indices.empty()) return false;
+  if (!mesh.normals.empty())
     repair_normals(mesh);
+  else if (origins != nullptr)
+    make_flat_normals(mesh, *origins);
+  else
+    make_flat_normals(mesh);
   finish_mesh(mesh);
   if (primitive.indices >= 0 && attribute(primitive, "NORMAL") != nullptr)
     warnings.duplicate_vertices += count_duplicate_vertices(mesh);
   warn_far_origin(gltf, place, mesh, warnings);
-  return mesh;
+  return true;
+}
+
+std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh, size_t primitive,
+                                   SceneWarnings& warnings) {
+  std::optional<Mesh> shape = read_raw_primitive(gltf, mesh, primitive, warnings);
+  if (shape && !clean_primitive(gltf, mesh, primitive, *shape, nullptr, warnings)) shape.reset();
+  return shape;
 }
 
 }  // namespace gnomon

@@ -14,6 +14,14 @@ namespace gnomon {
 std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh, size_t primitive,
                                    SceneWarnings& warnings);
 
+// Its two steps, for shapes that change in between. The first reads it as the file has it, normals none where
+// it has none. The second cleans it and may leave nothing: false; with `origins` (may be null) it keeps what
+// may get an area, and tells each vertex's place before.
+std::optional<Mesh> read_raw_primitive(const GltfFile& gltf, size_t mesh, size_t primitive,
+                                       SceneWarnings& warnings);
+bool clean_primitive(const GltfFile& gltf, size_t mesh, size_t primitive, Mesh& shape,
+                     std::vector<uint32_t>* origins, SceneWarnings& warnings);
+
 // Where a material's base colour texture is looked up: a set of coordinates, and KHR_texture_transform.
 struct TextureCoordinates {
   bool used = false;  // there is such a texture

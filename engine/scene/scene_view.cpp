@@ -31,14 +31,16 @@ const tinygltf::Value& member(const tinygltf::Value& object, const std::string& 
 
 class LightReader {
  public:
-  LightReader(const GltfFile& gltf, Scene& scene) : gltf_(gltf), scene_(scene) {}
+  // `animation`: may be null.
+  LightReader(const GltfFile& gltf, Scene& scene, Animation* animation,
+              const std::map<size_t, Track>& intensities)
+      : gltf_(gltf), scene_(scene), animation_(animation), intensities_(intensities) {}
 
-  void read(const std::vector<PlacedNode>& nodes, Animation* animation) {
+  void read(const std::vector<PlacedNode>& nodes) {
     for (size_t i = 0; i < nodes.size(); ++i) {
       const size_t before = scene_.lights.size();
-      read_node(nodes[i]);
-      if (nodes[i].moving && scene_.lights.size() > before)
-        animation->lights.push_back({static_cast<uint32_t>(before), i, glm::dmat4(1.0)});
+      const std::optional<size_t> source = read_node(nodes[i]);
+      if (source && animation_ != nullptr) attach(static_cast<uint32_t>(before), i, nodes[i], *source);
     }
     apply_scene_extras();
   }
@@ -48,10 +50,22 @@ class LightReader {
     scene_.warnings.messages.push_back(gltf_.file + ": " + place + ": " + what);
   }
 
-  void read_node(const PlacedNode& placed) {
+  void attach(uint32_t light, size_t node, const PlacedNode& placed, size_t source) {
+    if (placed.moving) animation_->lights.push_back({light, node, glm::dmat4(1.0)});
+    const auto track = intensities_.find(source);
+    if (track == intensities_.end() && !placed.blinks) return;
+    ChangingLight changing{light, scene_.lights[light].intensity, {}, {}};
+    if (track != intensities_.end()) changing.track = track->second;
+    if (placed.blinks) changing.node = node;
+    if (!placed.visible) scene_.lights[light].intensity = 0;
+    animation_->changing_lights.push_back(std::move(changing));
+  }
+
+  // The light's index in the file; nothing when the node has none.
+  std::optional<size_t> read_node(const PlacedNode& placed) {
     const tinygltf::Node& node = gltf_.model.nodes[placed.node];
     const auto extension = node.extensions.find("KHR_lights_punctual");
-    if (extension == node.extensions.end() || !placed.visible) return;
+    if (extension == node.extensions.end() || !placed.ever_visible) return {};
     const std::string place = at("/nodes", placed.node);
     const tinygltf::Value reference = member(extension->second, "light");
     const int index = reference.IsInt() ? reference.GetNumberAsInt() : -1;
@@ -66,6 +80,7 @@ class LightReader {
     set_area(light, node.extras, at(place, "extras"));
     scene_.lights.push_back(std::move(light));
     own_fov_.push_back(own_fov);
+    return static_cast<size_t>(index);
   }
 
   Light punctual(size_t index) {
@@ -139,6 +154,8 @@ class LightReader {
 
   const GltfFile& gltf_;
   Scene& scene_;
+  Animation* animation_;
+  const std::map<size_t, Track>& intensities_;
   std::vector<bool> own_fov_;
 };
 
@@ -211,8 +228,8 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
 }
 
 void read_lights(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
-                 Animation* animation) {
-  LightReader(gltf, scene).read(nodes, animation);
+                 Animation* animation, const std::map<size_t, Track>& intensities) {
+  LightReader(gltf, scene, animation, intensities).read(nodes);
 }
 
 void ensure_camera(Scene& scene) {

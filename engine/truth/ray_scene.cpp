@@ -200,7 +200,8 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     impl.geometries.push_back(geometry);
   }
   for (uint32_t id = 0; id < impl.geometries.size(); ++id)
-    if (impl.geometries[id].mesh->triangles() > 0) impl.attach(impl.geometries[id], id);
+    if (impl.geometries[id].mesh->triangles() > 0 && scene.instances[id].visible)
+      impl.attach(impl.geometries[id], id);
   impl.check("to load the scene");
   rtcCommitScene(impl.scene);
   impl.check("to build its hierarchy");

@@ -248,6 +248,7 @@ std::string reference_key(const Scene& scene, const ReferenceSettings& settings)
   for (const Instance& instance : scene.instances) {
     hash.value(instance.mesh);
     hash.values(instance.world_from_object);
+    if (!instance.visible) hash.value(uint8_t{0});
   }
   for (const Light& light : scene.lights) hash_light(hash, light);
   hash_view(hash, scene.cameras[settings.camera], settings);

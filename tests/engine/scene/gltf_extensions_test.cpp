@@ -134,7 +134,7 @@ TEST(GpuInstancing, EveryInstanceIsPlaced) {
   const auto placed = [&](size_t i) { return glm::dvec3(scene.instances[i].world_from_object * corner); };
   EXPECT_EQ(placed(0), glm::dvec3(11, 0, 0));
   EXPECT_LT(glm::distance(placed(1), glm::dvec3(10, 3, 0)), 1e-6);
-  EXPECT_EQ(scene.bounds.min.x, 8);  // the second, turned, reaches from 8 to 10; the third from 9
+  EXPECT_NEAR(scene.bounds.min.x, 8, 1e-6);  // the second, turned, reaches from 8 to 10; the third from 9
   EXPECT_GT(glm::determinant(glm::dmat3(scene.instances[2].world_from_object)), 0);
 }
 
