@@ -1,5 +1,6 @@
 // gnomon compare: the error of one visibility image against another.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -20,6 +21,7 @@ using nlohmann::json;
 
 struct Options {
   fs::path result, reference, json_file;
+  std::string channel;  // empty: Y, light1.Y, ...
   bool json_output = false;
   double max_misclassified = -1, max_rmse = -1;  // negative: no bound
 };
@@ -36,6 +38,11 @@ std::vector<uint8_t> read_domain(const Image& reference, size_t light) {
   return domain;
 }
 
+[[noreturn]] void fail_without(const fs::path& file, const Image& image, const std::string& channel) {
+  fail(fmt::format("no channel '{}'; it has: {}", channel, fmt::join(image.channels, ", ")), file.string(),
+       {}, "--channel names another one, --channel luminance compares that of R, G and B");
+}
+
 std::vector<ErrorMetrics> compare_images(const Options& options) {
   const Image result = read_exr(options.result), reference = read_exr(options.reference);
   if (result.width != reference.width || result.height != reference.height)
@@ -43,14 +50,19 @@ std::vector<ErrorMetrics> compare_images(const Options& options) {
                      reference.width, reference.height),
          options.result.string());
   std::vector<ErrorMetrics> lights;
+  if (!options.channel.empty()) {
+    const std::string& name = options.channel;
+    const std::string truth = reference.has("Y") && !reference.has(name) ? "Y" : name;
+    return {compare_visibility(scalar_values(result, name, options.result.string()),
+                               scalar_values(reference, truth, options.reference.string()),
+                               read_domain(reference, 0), result.width, result.height)};
+  }
   for (size_t light = 0; light == 0 || reference.has(channel_of(light)); ++light) {
     const auto truth = [&] {
-      if (!reference.has(channel_of(light)))
-        fail("no channel 'Y'", options.reference.string(), {}, "gnomon reference writes such files");
+      if (!reference.has(channel_of(light))) fail_without(options.reference, reference, "Y");
       return reference.plane(channel_of(light));
     }();
-    if (!result.has(channel_of(light)))
-      fail(fmt::format("no channel '{}'", channel_of(light)), options.result.string());
+    if (!result.has(channel_of(light))) fail_without(options.result, result, channel_of(light));
     lights.push_back(compare_visibility(result.plane(channel_of(light)), truth, read_domain(reference, light),
                                         result.width, result.height));
   }
@@ -112,6 +124,12 @@ void add_compare(CLI::App& app, int& status) {
       ->add_option("REFERENCE", options->reference,
                    "an EXR that 'gnomon reference' wrote, or any with a channel Y")
       ->required();
+  command
+      ->add_option(
+          "--channel", options->channel,
+          "the result's channel instead of Y, or a layer; luminance: that of R, G and B. The reference's "
+          "is Y where it lacks this one")
+      ->type_name("NAME");
   command->add_option("--json", options->json_file, "print JSON, or with FILE write it there")
       ->type_name("[FILE]")
       ->expected(0, 1);
