@@ -122,8 +122,11 @@ class InstanceReader {
       fail("more than " + std::to_string(max_instances) + " instances", gltf_.file,
            at("/nodes", placed.node));
     const std::string& name = gltf_.model.nodes[placed.node].name;
-    Instance instance{name.empty() ? scene_.meshes[shape].name : name, shape,
-                      placed.world_from_node * node_from_object, placed.moving, placed.visible};
+    const glm::dmat4 world_from_object = node_from_object == glm::dmat4(1.0)
+                                             ? placed.world_from_node  // to the bit
+                                             : placed.world_from_node * node_from_object;
+    Instance instance{name.empty() ? scene_.meshes[shape].name : name, shape, world_from_object,
+                      placed.moving, placed.visible};
     const glm::dmat3 axes(instance.world_from_object);
     if (regularity(axes) < 1e-9) {
       if (!flatten(instance, placed.node)) return;
