@@ -30,4 +30,20 @@ std::string aspect_warning(const Camera& camera, double image_aspect) {
                      aspect < image_aspect ? "at the sides" : "above and below");
 }
 
+bool far_plane_cuts(const Scene& scene, const Camera& camera) {
+  if (!camera.far) return false;
+  const glm::dmat4 view = glm::inverse(camera.world_from_camera);
+  for (const Instance& instance : scene.instances) {
+    if (instance.moving || camera.moving) return true;
+    const glm::dmat4 placed = view * instance.world_from_object;
+    const Bounds& box = scene.meshes[instance.mesh].bounds;
+    for (int i = 0; i < 8; ++i) {
+      const glm::dvec3 corner((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
+                              (i & 4) != 0 ? box.max.z : box.min.z);
+      if (-(placed * glm::dvec4(corner, 1.0)).z > *camera.far) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace gnomon

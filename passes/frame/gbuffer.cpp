@@ -1,6 +1,7 @@
 // The pass gbuffer: depth, normals and albedo of what the camera sees.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/scene/camera.h"
 #include "engine/render/environment.h"
 #include "engine/render/render_settings.h"
 
@@ -37,7 +38,7 @@ class GBuffer : public Pass {
     state.depth_test = state.depth_write = true;
     state.depth_compare = e.settings().reversed_z ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
     far_ = e.settings().reversed_z ? 0.0f : 1.0f;
-    if (e.gpu_scene().camera().far) state.defines.emplace_back("FAR_PLANE", "1");
+    if (far_plane_cuts(e.scene(), e.gpu_scene().camera())) state.defines.emplace_back("FAR_PLANE", "1");
     pipelines_.opaque = e.raster(state);
     state.defines.emplace_back("MASKED", "1");
     pipelines_.masked = e.raster(state);

@@ -62,7 +62,11 @@ TEST(Camera, TheFarPlaneIsRead) {
   draft.document["scenes"][0]["nodes"] = {0, 1};
   draft.document["cameras"] = {
       {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.5}, {"zfar", 20}}}}};
-  EXPECT_EQ(load(draft).cameras[0].far, 20);
+  const Scene scene = load(draft);
+  EXPECT_EQ(scene.cameras[0].far, 20);
+  EXPECT_FALSE(far_plane_cuts(scene, scene.cameras[0]));
+  draft.document["nodes"][0]["translation"] = {0, 0, -20.5};
+  EXPECT_TRUE(far_plane_cuts(load(draft), load(draft).cameras[0]));
   draft.document["cameras"][0]["perspective"]["zfar"] = 0.25;
   EXPECT_FALSE(load(draft).cameras[0].far);
   EXPECT_TRUE(warns(load(draft), "zfar is not above znear"));
