@@ -1,9 +1,10 @@
 // The pass gbuffer: depth, normals and albedo of what the camera sees.
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
-#include "engine/scene/camera.h"
 #include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
 #include "engine/render/render_settings.h"
+#include "engine/scene/camera.h"
 
 namespace gnomon {
 namespace {
