@@ -110,8 +110,8 @@ std::vector<glm::dmat4> node_transforms(const Animation& animation, double secon
 }
 
 bool is_idle(const Animation& a) {
-  return a.instances.empty() && a.cameras.empty() && a.lights.empty() && a.changing_lights.empty() &&
-         a.changing_materials.empty() && a.deformations.empty();
+  return a.instances.empty() && a.cameras.empty() && a.lights.empty() && a.blinking.empty() &&
+         a.changing_lights.empty() && a.changing_materials.empty() && a.deformations.empty();
 }
 
 std::vector<bool> node_visibility(const Animation& animation, double seconds) {
@@ -158,6 +158,7 @@ void change(const Scene& scene, const Animation& animation, const std::vector<gl
             double seconds, Pose& pose) {
   const std::vector<bool> visible = node_visibility(animation, seconds);
   for (const Attachment& a : animation.instances) pose.visible[a.target] = visible[a.node];
+  for (const BlinkingInstance& b : animation.blinking) pose.visible[b.instance] = visible[b.node];
   for (const ChangingLight& light : animation.changing_lights) {
     const double lit = light.track ? std::max(values_at(*light.track, seconds).x, 0.0) : light.intensity;
     pose.intensities[light.light] = light.node && !visible[*light.node] ? 0.0 : lit;

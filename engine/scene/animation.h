@@ -77,9 +77,15 @@ struct ChangingMaterial {
   std::optional<Track> color, cutoff;
 };
 
+struct BlinkingInstance {  // shown and hidden where it stands: a skin
+  uint32_t instance = 0;
+  size_t node = 0;
+};
+
 struct Animation {
   std::vector<AnimatedNode> nodes;  // parents before children
   std::vector<Attachment> instances, cameras, lights;
+  std::vector<BlinkingInstance> blinking;
   std::vector<ChangingLight> changing_lights;
   std::vector<ChangingMaterial> changing_materials;
   std::vector<Deformation> deformations;  // of meshes that move within

@@ -175,6 +175,10 @@ class InstanceReader {
       place(deformation->mesh, place_of_skin, index, glm::dmat4(1.0));
     else
       for (const glm::dmat4& copy : copies) place(deformation->mesh, placed, index, copy * unmirrored);
+    if (skinned && placed.blinks && first < scene_.instances.size()) {
+      animation_->blinking.push_back({first, index});
+      scene_.instances[first].moving = true;
+    }
     if (!moving) return true;
     for (size_t i = first; i < scene_.instances.size(); ++i) scene_.instances[i].moving = true;
     follow(*deformation, origins);

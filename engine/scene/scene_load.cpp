@@ -14,7 +14,8 @@ namespace gnomon {
 namespace {
 
 // Meshes that only mirrored or flattened instances used are left without one: drop them.
-void drop_unused_meshes(Scene& scene) {
+// `animation`: may be null.
+void drop_unused_meshes(Scene& scene, Animation* animation) {
   std::vector<uint32_t> place(scene.meshes.size(), UINT32_MAX);
   for (const Instance& instance : scene.instances) place[instance.mesh] = 0;
   std::vector<Mesh> kept;
@@ -25,6 +26,9 @@ void drop_unused_meshes(Scene& scene) {
   }
   for (Instance& instance : scene.instances) instance.mesh = place[instance.mesh];
   scene.meshes = std::move(kept);
+  if (animation == nullptr) return;
+  for (Deformation& deformation : animation->deformations) deformation.mesh = place[deformation.mesh];
+  std::erase_if(animation->deformations, [](const Deformation& d) { return d.mesh == UINT32_MAX; });
 }
 
 // Says what has been left out and why.
@@ -87,7 +91,7 @@ Scene load_scene(const std::filesystem::path& file) {
   read_materials(gltf, scene);
   if (animation) start_materials(scene, *animation);
   read_instances(gltf, nodes, scene, animation.get());
-  drop_unused_meshes(scene);
+  drop_unused_meshes(scene, animation.get());
   if (scene.instances.empty()) fail_without_triangles(gltf, nodes, scene.warnings);
   scene.bounds = world_bounds(scene);
   read_cameras(gltf, nodes, scene, animation.get());

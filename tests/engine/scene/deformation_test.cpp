@@ -108,6 +108,19 @@ TEST(Skin, FollowsItsJoints) {
   EXPECT_EQ(later.meshes[0].bounds.max.y, 3);  // about the first joint at time 0
 }
 
+// A skin stands still while its node is shown and hidden.
+TEST(Skin, IsShownAndHiddenWithItsNode) {
+  Draft draft = skinned();
+  animate(draft, pointer("/nodes/0/extensions/KHR_node_visibility/visible"), {0, 1}, {1, 0}, "SCALAR", 1,
+          "STEP");
+  const Scene scene = load(draft);
+  ASSERT_TRUE(scene.animation);
+  EXPECT_TRUE(scene.instances[0].visible);
+  const Scene later = posed(scene, 1);
+  EXPECT_FALSE(later.instances[0].visible);
+  EXPECT_EQ(later.instances[0].world_from_object, scene.instances[0].world_from_object);
+}
+
 TEST(Skin, JointsOutsideTheSceneAreTold) {
   Draft draft = skinned();
   draft.document["scenes"][0]["nodes"] = {0};
