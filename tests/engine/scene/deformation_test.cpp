@@ -175,6 +175,23 @@ TEST(MorphTargets, WeightsAreAnimated) {
   }
 }
 
+// Meshes that only mirrored instances use are dropped: those that change keep their place.
+TEST(MorphTargets, OtherMeshesMayBeDropped) {
+  Draft draft = morphed();
+  draft.document["meshes"].push_back(draft.document["meshes"][0]);
+  draft.document["meshes"][1]["primitives"][0].erase("targets");
+  draft.document["nodes"] = Json::parse(R"([{"mesh":1,"scale":[-1,1,1]},{"mesh":0}])");
+  draft.document["scenes"][0]["nodes"] = {0, 1};
+  animate(draft, {{"node", 1}, {"path", "weights"}}, {0, 1}, {0, 0, 1, 4}, "SCALAR", 1);
+  const Scene scene = load(draft);
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  ASSERT_EQ(scene.animation->deformations.size(), 1u);
+  EXPECT_EQ(scene.animation->deformations[0].mesh, scene.instances[1].mesh);
+  const Scene later = posed(scene, 1);
+  EXPECT_EQ(later.meshes[scene.instances[1].mesh].bounds.max, glm::dvec3(5, 1, 2));
+  EXPECT_EQ(later.meshes[scene.instances[0].mesh].bounds.max, glm::dvec3(0, 1, 0));
+}
+
 // A shape that grows out of nothing is kept.
 TEST(MorphTargets, TrianglesThatOpenLaterAreKept) {
   Draft draft = morphed();
