@@ -1,5 +1,4 @@
 // Interpolates key frames and poses a scene's node tree at a time.
-// Key frames, and the pose that they make.
 #include "engine/scene/animation.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // Reads the animations of a glTF file.
-// Reads key frames, and what they are of.
 #include "engine/scene/gltf_animation.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // Loads a glTF file as a scene.
-// Reads a glTF file as a scene.
 #include <algorithm>
 
 #include "engine/base/error.h"

@@ -1,4 +1,3 @@
-// Reads a glTF file's materials and textures.
 // Materials and textures of a glTF file: what decides a surface's coverage and its base colour.
 #include <algorithm>
 #include <array>

@@ -1,5 +1,4 @@
 // Walks a glTF file's node tree: transforms, and what is not supported.
-// The node tree of a glTF file.
 #include "engine/scene/scene_nodes.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// Reads the triangles of glTF primitives.
 // One glTF primitive as a mesh: attributes, triangles, and the coordinates of its texture.
 #include "engine/scene/scene_primitive.h"
 
