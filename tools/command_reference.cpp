@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/image/image.h"
 #include "engine/scene/animation.h"
+#include "engine/scene/camera.h"
 #include "engine/truth/reference.h"
 #include "tools/cli.h"
 
