@@ -1,5 +1,6 @@
 // gnomon compare: the error of one visibility image against another.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -22,6 +23,7 @@ using nlohmann::json;
 
 struct Options {
   fs::path result, reference, json_file;
+  std::string channel;  // empty: Y, light1.Y, ...
   bool json_output = false;
   double max_misclassified = -1, max_rmse = -1;  // negative: no bound
 };
@@ -40,18 +42,37 @@ std::vector<uint8_t> read_domain(const Image& reference, uint32_t light) {
   return domain;
 }
 
+[[noreturn]] void fail_without(const fs::path& file, const Image& image, const std::string& channel) {
+  fail(fmt::format("no channel '{}'; it has: {}", channel, fmt::join(image.channels, ", ")), file.string(),
+       {}, "--channel names another one, --channel luminance compares that of R, G and B");
+}
+
+// One channel of each, whatever they are called.
+MeasuredError compare_channel(const Options& options, const Image& result, const Image& reference) {
+  const std::string& name = options.channel;
+  const std::string truth = reference.has("Y") && !reference.has(name) ? "Y" : name;
+  const std::vector<uint8_t> domain = read_domain(reference, 0);
+  MeasuredError error;
+  error.lights.push_back({compare_visibility(scalar_values(result, name, options.result.string()),
+                                             scalar_values(reference, truth, options.reference.string()),
+                                             domain, result.width, result.height),
+                          why_none_counts(domain)});
+  error.all = over_lights(error.lights);
+  return error;
+}
+
 MeasuredError compare_images(const Options& options) {
   const Image result = read_exr(options.result), reference = read_exr(options.reference);
   if (result.width != reference.width || result.height != reference.height)
     fail(fmt::format("{}x{} pixels, but the reference has {}x{}", result.width, result.height,
                      reference.width, reference.height),
          options.result.string());
-  if (!reference.has(visibility_channel(0)))
-    fail("no channel 'Y'", options.reference.string(), {}, "gnomon reference writes such files");
+  if (!options.channel.empty()) return compare_channel(options, result, reference);
+  if (!reference.has(visibility_channel(0))) fail_without(options.reference, reference, "Y");
   MeasuredError error;
   for (uint32_t light = 0; reference.has(visibility_channel(light)); ++light) {
     const std::string channel = visibility_channel(light);
-    if (!result.has(channel)) fail(fmt::format("no channel '{}'", channel), options.result.string());
+    if (!result.has(channel)) fail_without(options.result, result, channel);
     const std::vector<uint8_t> domain = read_domain(reference, light);
     error.lights.push_back({compare_visibility(result.plane(channel), reference.plane(channel), domain,
                                                result.width, result.height),
@@ -115,6 +136,12 @@ void add_compare(CLI::App& app, int& status) {
       ->add_option("REFERENCE", options->reference,
                    "an EXR that 'gnomon reference' wrote, or any with a channel Y")
       ->required();
+  command
+      ->add_option(
+          "--channel", options->channel,
+          "the result's channel instead of Y, or a layer; luminance: that of R, G and B. The reference's "
+          "is Y where it lacks this one")
+      ->type_name("NAME");
   command->add_option("--json", options->json_file, "print JSON, or with FILE write it there")
       ->type_name("[FILE]")
       ->expected(0, 1);

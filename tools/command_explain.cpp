@@ -36,9 +36,7 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
   setting.lights = static_cast<uint32_t>(scene.lights.size());
   for (const Light& light : scene.lights) setting.light_types.push_back(view_type(light));
   setting.scene = scene_sizes(scene);
-  return compile(
-      graph, setting,
-      scene_facts(scene, camera, camera.aspect.value_or(double(size.width) / size.height), size.height));
+  return compile(graph, setting, scene_facts(scene, camera, double(size.width) / size.height, size.height));
 }
 
 // A frame as it is, and one with everything kept.

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/image/image.h"
 #include "engine/scene/animation.h"
+#include "engine/scene/camera.h"
 #include "engine/truth/reference.h"
 #include "tools/cli.h"
 #include "tools/terminal.h"
@@ -39,7 +40,9 @@ void reference_command(const Options& options) {
   if (!std::isfinite(options.time)) fail("the time is not a finite number", {}, "--time");
   auto scene = open_scene(options.scene, options.light_scale);
   if (scene->animation) scene = std::make_shared<const Scene>(posed(*scene, options.time));
-  camera_of(*scene, options.camera);
+  const Camera& camera = camera_of(*scene, options.camera);
+  if (const std::string told = aspect_warning(camera, double(size.width) / size.height); !told.empty())
+    warn(told);
   Progress progress("reference " + scene->name, 5);
   settings.progress = [&](double share) { progress.update(share); };
   const Reference reference = ReferenceTracer(*scene).trace(settings);

@@ -104,6 +104,7 @@ void describe_cameras(const Scene& scene, Out out) {
     fmt::format_to(out, "  {}: at {}, towards {}, {:.4g} degrees, near {:.4g}", camera.name,
                    text(position(camera.world_from_camera)), text(forward(camera.world_from_camera)),
                    degrees(camera.fov_y), camera.near);
+    if (camera.far) fmt::format_to(out, ", far {:.3g}", *camera.far);
     if (camera.aspect) fmt::format_to(out, ", aspect {:.4g}", *camera.aspect);
     fmt::format_to(out, "\n");
   }
@@ -112,8 +113,13 @@ void describe_cameras(const Scene& scene, Out out) {
 void describe_animation(const Scene& scene, Out out) {
   if (!scene.animation) return;
   const Animation& moving = *scene.animation;
-  fmt::format_to(out, "animation: {:.4g} s, moves {} instances, {} cameras, {} lights\n", duration(moving),
+  fmt::format_to(out, "animation: {:.4g} s, moves {} instances, {} cameras, {} lights", duration(moving),
                  moving.instances.size(), moving.cameras.size(), moving.lights.size());
+  if (const size_t count = moving.deformations.size()) fmt::format_to(out, "; the shape of {} meshes", count);
+  if (const size_t count = moving.changing_lights.size())
+    fmt::format_to(out, "; the intensity of {} lights", count);
+  if (const size_t count = moving.changing_materials.size()) fmt::format_to(out, "; {} materials", count);
+  fmt::format_to(out, "\n");
 }
 
 void describe_warnings(const SceneWarnings& warnings, Out out) {

@@ -23,10 +23,10 @@ std::optional<uint32_t> pixel_of(const Camera& camera, const glm::dvec3& relativ
                                  uint32_t height) {
   const glm::dvec3 p = glm::transpose(glm::dmat3(camera.world_from_camera)) * relative;
   if (!(-p.z > 0)) return std::nullopt;
-  const double half_height = std::tan(0.5 * camera.fov_y),
-               half_width = half_height * camera.aspect.value_or(double(width) / height);
+  const double aspect = double(width) / height, half = half_extent(camera, aspect).y,
+               half_width = half * aspect;
   const double x = std::floor((0.5 + 0.5 * p.x / (-p.z * half_width)) * width),
-               y = std::floor((0.5 - 0.5 * p.y / (-p.z * half_height)) * height);
+               y = std::floor((0.5 - 0.5 * p.y / (-p.z * half)) * height);
   if (!(x >= 0 && y >= 0 && x < width && y < height)) return std::nullopt;
   return static_cast<uint32_t>(y) * width + static_cast<uint32_t>(x);
 }

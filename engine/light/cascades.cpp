@@ -21,7 +21,7 @@ struct Window {
 // What the camera sees from the depths of `volume`'s nearest bounds to `reach`, as the whole view shows it.
 Window window_of(const ViewVolume& volume, const Camera& camera, double aspect,
                  const glm::dmat4& light_from_seen, double reach) {
-  const double y = std::tan(0.5 * camera.fov_y), x = y * aspect;
+  const double y = half_extent(camera, aspect).y, x = y * aspect;
   glm::dmat4 turned = camera.world_from_camera;
   turned[3] = glm::dvec4(0.0, 0.0, 0.0, 1.0);
   Window window;

@@ -109,7 +109,7 @@ ViewVolume::ViewVolume(const Scene& scene, const Camera& camera, double aspect, 
   glm::dmat4 placed = camera.world_from_camera;
   placed[3] -= glm::dvec4(origin, 0.0);
   const glm::dmat4 view = glm::inverse(placed);
-  const double y = std::tan(0.5 * camera.fov_y), x = y * aspect;
+  const double y = half_extent(camera, aspect).y, x = y * aspect;
   double nearest = 1e300, farthest = 0;
   for (const Instance& instance : scene.instances) {
     const Corners corners = box_corners(scene, instance, origin);

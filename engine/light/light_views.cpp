@@ -131,6 +131,7 @@ double scene_size(const Scene& scene) {
 // Which instances are measured: all, those that stand still, or those that move.
 enum class Which { all, still, moving };
 bool takes(Which which, const Instance& instance) {
+  if (!instance.visible) return false;
   return which == Which::all || instance.moving == (which == Which::moving);
 }
 

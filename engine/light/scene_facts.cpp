@@ -239,15 +239,14 @@ SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect, 
   glm::dmat4 placed = camera.world_from_camera;
   placed[3] -= glm::dvec4(origin, 0.0);
   const glm::dmat4 view = glm::inverse(placed);
-  const double half_height = std::tan(0.5 * camera.fov_y);
+  const double half = half_extent(camera, aspect).y;
   View seen{glm::dvec3(placed[3]), {}, ViewVolume(scene, camera, aspect, origin)};
   for (const Body& body : bodies)
-    seen.visible.push_back(
-        !outside_pyramid(body.corners, view, half_height * aspect, half_height, camera.near));
+    seen.visible.push_back(!outside_pyramid(body.corners, view, half * aspect, half, camera.near));
   facts.middle_depth = std::max(glm::length(seen.eye), 1e-30);
   const bool still = !facts.casters_move && !camera.moving;
   facts.nearest_depth = still ? std::max(seen.volume.nearest(), camera.near) : camera.near;
-  if (height > 0) facts.smallest_pixel = 2 * half_height / height * facts.nearest_depth;
+  if (height > 0) facts.smallest_pixel = 2 * half / height * facts.nearest_depth;
   for (const Light& light : scene.lights) {
     facts.light_moves.push_back(light.moving);
     const bool may = !still || light.moving;  // somewhere on the way

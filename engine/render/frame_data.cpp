@@ -14,7 +14,7 @@ namespace {
 
 // Infinite far plane, Vulkan clip space (y down). Reversed: depth = near / z; standard: 1 - near / z.
 glm::dmat4 camera_projection(const Camera& camera, double aspect, bool reversed_z) {
-  const double focal = 1.0 / std::tan(0.5 * camera.fov_y);
+  const double focal = 1.0 / half_extent(camera, aspect).y;
   glm::dmat4 p(0.0);
   p[0][0] = focal / aspect;
   p[1][1] = -focal;
@@ -47,23 +47,23 @@ void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, gl
 
 FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
                      bool reversed_z, uint32_t lights, uint32_t frame) {
-  const double aspect = camera.aspect.value_or(double(width) / height);
+  const double aspect = double(width) / height;
   const glm::dmat3 world_from_camera(camera.world_from_camera);
   const glm::dmat4 view = view_rotation(camera);
-  const double half_height = std::tan(0.5 * camera.fov_y), half_width = half_height * aspect;
+  const double half = half_extent(camera, aspect).y, half_width = half * aspect;
   FrameData data{};
   data.clip_from_relative = glm::mat4(camera_projection(camera, aspect, reversed_z) * view);
   data.view_from_relative = glm::mat4(view);
-  data.ray_corner = glm::vec4(world_from_camera * glm::dvec3(-half_width, half_height, -1.0), 0.0);
+  data.ray_corner = glm::vec4(world_from_camera * glm::dvec3(-half_width, half, -1.0), 0.0);
   data.ray_dx = glm::vec4(world_from_camera[0] * (2.0 * half_width / width), 0.0);
-  data.ray_dy = glm::vec4(world_from_camera[1] * (-2.0 * half_height / height), 0.0);
+  data.ray_dy = glm::vec4(world_from_camera[1] * (-2.0 * half / height), 0.0);
   data.viewport = {float(width), float(height), 1.0f / float(width), 1.0f / float(height)};
-  data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, 0.0f, 0.0f};
+  data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, float(camera.far.value_or(0.0)), 0.0f};
   data.counts = {lights, 0, frame, 0};
   const glm::dvec3 step(camera.world_from_camera[3] - previous.world_from_camera[3]);
   data.previous_clip_from_relative =
-      glm::mat4(camera_projection(previous, previous.aspect.value_or(double(width) / height), reversed_z) *
-                view_rotation(previous) * glm::translate(glm::dmat4(1.0), step));
+      glm::mat4(camera_projection(previous, aspect, reversed_z) * view_rotation(previous) *
+                glm::translate(glm::dmat4(1.0), step));
   return data;
 }
 
@@ -110,6 +110,8 @@ std::vector<InstanceData> instance_data(const Scene& scene, const std::vector<ui
   for (const Instance& instance : scene.instances) {
     InstanceData data{};
     data.relative_from_object = glm::mat4(glm::translate(glm::dmat4(1.0), -eye) * instance.world_from_object);
+    // Hidden: all vertices in one point, so that no pass draws anything of it.
+    if (!instance.visible) data.relative_from_object = glm::mat4(0.0f), data.relative_from_object[3].w = 1.0f;
     const glm::dmat3 linear(instance.world_from_object);
     // The cofactor matrix turns normals rightly for every scale, and its sign follows a mirrored instance's
     // winding.

@@ -15,7 +15,7 @@ struct FrameData {
   glm::vec4 ray_corner;                   // relative position at view depth 1 of the image's top left corner
   glm::vec4 ray_dx, ray_dy;               // step of it per pixel
   glm::vec4 viewport;                     // width, height, 1/width, 1/height
-  glm::vec4 depth;                        // near plane (world units), 1 when reversed z
+  glm::vec4 depth;                        // near plane (world units), 1 when reversed z, far plane or 0
   glm::uvec4 counts;                      // lights, unused, frame index, unused
   glm::mat4 previous_clip_from_relative;  // the previous frame's camera; relative to this frame's eye
 };

@@ -37,11 +37,65 @@ VertexAttributes attributes_at(const Mesh& mesh, size_t i) {
   return a;
 }
 
-// Geometric normal of a triangle, in double: slivers keep theirs.
+// Geometric normal of a triangle, in double: slivers keep theirs. One without area, which only a shape that
+// changes has, is never seen.
 glm::vec3 triangle_normal(const Mesh& mesh, size_t triangle) {
   const uint32_t* i = &mesh.indices[3 * triangle];
   const glm::dvec3 a = mesh.positions[i[0]], b = mesh.positions[i[1]], c = mesh.positions[i[2]];
-  return glm::normalize(glm::cross(b - a, c - a));
+  const glm::dvec3 n = glm::cross(b - a, c - a);
+  return glm::dot(n, n) > 0 ? glm::normalize(n) : glm::dvec3(0, 1, 0);
+}
+
+std::vector<VertexAttributes> attributes_of(const Mesh& mesh) {
+  std::vector<VertexAttributes> result;
+  for (size_t i = 0; i < mesh.positions.size(); ++i) result.push_back(attributes_at(mesh, i));
+  return result;
+}
+
+std::vector<glm::i16vec2> normals_of(const Mesh& mesh) {
+  std::vector<glm::i16vec2> result;
+  for (size_t t = 0; t < mesh.triangles(); ++t)
+    result.push_back(octahedral_snorm16(triangle_normal(mesh, t)));
+  return result;
+}
+
+// Writes parts of device buffers, all at once.
+class Rewrite {
+ public:
+  template <class T>
+  void add(const Buffer& target, size_t first, const std::vector<T>& values) {
+    if (values.empty()) return;
+    const auto bytes = bytes_of(values);
+    parts_.push_back({&target, {bytes_.size(), first * sizeof(T), bytes.size()}});
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+
+  void run(const std::shared_ptr<Device>& device) const {
+    if (parts_.empty()) return;
+    const Buffer staging(device, bytes_.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Place::host);
+    std::memcpy(staging.bytes().data(), bytes_.data(), bytes_.size());
+    OneShot once(device);
+    for (const Part& part : parts_)
+      vkCmdCopyBuffer(once.commands(), staging.handle(), part.target->handle(), 1, &part.copy);
+    VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+    barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT;
+    vkCmdPipelineBarrier(once.commands(), VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                         0, 1, &barrier, 0, nullptr, 0, nullptr);
+    once.submit_and_wait();
+  }
+
+ private:
+  struct Part {
+    const Buffer* target;
+    VkBufferCopy copy;
+  };
+  std::vector<Part> parts_;
+  std::vector<std::byte> bytes_;
+};
+
+bool same(const Shape& shape, const Mesh& mesh) {
+  return shape.positions == mesh.positions && shape.normals == mesh.normals;
 }
 
 Handle<VkDescriptorSetLayout> make_layout(const std::shared_ptr<Device>& device,
@@ -71,13 +125,16 @@ GpuImage upload_texture(const std::shared_ptr<Device>& device, const Texture& te
   return image;
 }
 
+VkSamplerAddressMode address_mode(Wrap wrap) {
+  if (wrap == Wrap::clamp) return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  return wrap == Wrap::mirror ? VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT : VK_SAMPLER_ADDRESS_MODE_REPEAT;
+}
+
 Handle<VkSampler> make_sampler(const std::shared_ptr<Device>& device, const Texture& texture) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = texture.nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-  info.addressModeU =
-      texture.repeat_u ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.addressModeV =
-      texture.repeat_v ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.addressModeU = address_mode(texture.wrap_u);
+  info.addressModeV = address_mode(texture.wrap_v);
   return create(device, vkCreateSampler, info, vkDestroySampler, "vkCreateSampler");
 }
 
@@ -120,10 +177,11 @@ void GpuScene::upload_geometry() {
     first_vertex_.push_back(uint32_t(positions.size()));
     first_triangle_.push_back(uint32_t(normals.size()));
     positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (size_t i = 0; i < mesh.positions.size(); ++i) attributes.push_back(attributes_at(mesh, i));
+    const std::vector<VertexAttributes> own = attributes_of(mesh);
+    attributes.insert(attributes.end(), own.begin(), own.end());
     indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
-    for (size_t t = 0; t < mesh.triangles(); ++t)
-      normals.push_back(octahedral_snorm16(triangle_normal(mesh, t)));
+    const std::vector<glm::i16vec2> faces = normals_of(mesh);
+    normals.insert(normals.end(), faces.begin(), faces.end());
   }
   for (uint32_t i = 0; i < scene_->instances.size(); ++i) {
     const Instance& instance = scene_->instances[i];
@@ -223,12 +281,35 @@ void GpuScene::pose(double seconds, bool first) {
   if (!moving_) return;
   const Pose pose = pose_at(*moving_, seconds);
   for (size_t i = 0; i < pose.instances.size(); ++i) {
-    casters_changed_ = casters_changed_ || pose.instances[i] != moving_->instances[i].world_from_object;
+    const Instance& instance = moving_->instances[i];
+    casters_changed_ = casters_changed_ || pose.instances[i] != instance.world_from_object ||
+                       pose.visible[i] != instance.visible;
     draws_[i].mirrored = is_mirrored(pose.instances[i]);
   }
   for (size_t i = 0; i < pose.lights.size(); ++i)
-    if (pose.lights[i] != moving_->lights[i].world_from_light) lights_changed_[i] = true;
+    if (pose.lights[i] != moving_->lights[i].world_from_light ||
+        pose.intensities[i] != moving_->lights[i].intensity)
+      lights_changed_[i] = true;
+  for (const PosedMaterial& m : pose.materials)
+    casters_changed_ = casters_changed_ || m.base_color != moving_->materials[m.material].base_color ||
+                       m.alpha_cutoff != moving_->materials[m.material].alpha_cutoff;
+  for (const PosedMesh& m : pose.meshes)
+    casters_changed_ = casters_changed_ || !same(m.shape, moving_->meshes[m.mesh]);
   apply(pose, *moving_);
+  if (casters_changed_) update_meshes(pose);
+}
+
+// What apply() has changed of meshes and materials.
+void GpuScene::update_meshes(const Pose& pose) {
+  Rewrite rewrite;
+  for (const PosedMesh& posed : pose.meshes) {
+    const Mesh& mesh = moving_->meshes[posed.mesh];
+    rewrite.add(positions_, first_vertex_[posed.mesh], mesh.positions);
+    rewrite.add(attributes_, first_vertex_[posed.mesh], attributes_of(mesh));
+    rewrite.add(triangle_normals_, first_triangle_[posed.mesh], normals_of(mesh));
+  }
+  if (!pose.materials.empty()) rewrite.add(materials_, 0, material_data(*moving_));
+  rewrite.run(device_);
 }
 
 void GpuScene::update(const FrameView& view, double seconds, uint32_t frame_index) {

@@ -13,6 +13,8 @@
 
 namespace gnomon {
 
+struct Pose;  // engine/scene/animation.h
+
 struct FrameView {                 // what a frame shows
   uint32_t camera = 0;             // index into Scene::cameras
   uint32_t width = 1, height = 1;  // pixels
@@ -48,8 +50,10 @@ class GpuScene {
   void update(const FrameView& view, double seconds, uint32_t frame_index);
 
   // Since the frame before; all true in frame 0.
-  bool casters_changed() const { return casters_changed_; }                    // some instance has moved
-  bool light_changed(uint32_t light) const { return lights_changed_[light]; }  // it has moved
+  bool casters_changed() const { return casters_changed_; }  // some instance has moved or changed its shape
+  bool light_changed(uint32_t light) const {
+    return lights_changed_[light];
+  }                                                        // it has moved, or its intensity
   bool camera_changed() const { return camera_changed_; }  // its place or the view's shape
 
  private:
@@ -58,6 +62,7 @@ class GpuScene {
   void make_frame_set();
   void make_material_sets();
   void pose(double seconds, bool first);
+  void update_meshes(const Pose& pose);
 
   std::shared_ptr<Device> device_;
   std::shared_ptr<Scene> moving_;  // null: nothing moves

@@ -13,6 +13,7 @@
 #include "engine/render/device_plan.h"
 #include "engine/render/environment.h"
 #include "engine/render/gpu_scene.h"
+#include "engine/scene/camera.h"
 #include "engine/scene/wide_spot.h"
 #include "engine/vulkan/handle.h"
 #include "engine/vulkan/readback.h"
@@ -118,7 +119,9 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
   options.keep_all = settings.keep_all;
   options.captures = settings.captures;
   options.memory = [this](const Resource& resource) { return device_need(device, resource); };
-  const double aspect = camera.aspect.value_or(double(settings.width) / settings.height);
+  const double aspect = double(settings.width) / settings.height;
+  if (const std::string warning = aspect_warning(camera, aspect); !warning.empty())
+    warnings.push_back(warning);
   const SceneFacts facts_of_view =
       scene->meshes.empty() ? facts_of_nothing() : scene_facts(*scene, camera, aspect, settings.height);
   plan =

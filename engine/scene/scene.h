@@ -29,7 +29,8 @@ struct Mesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3>
       normals;  // as many as positions, unit length (made from the faces when the file has none)
-  std::vector<glm::vec2> uvs;     // as many as positions (zero when the file has none)
+  std::vector<glm::vec2> uvs;     // of the material's texture, transformed as it says; as many as positions
+                                  // (zero when the file has none)
   std::vector<glm::vec4> colors;  // COLOR_0, linear; as many as positions, or empty
   std::vector<uint32_t> indices;  // 3 per triangle, counter-clockwise is front
   uint32_t material = 0;
@@ -38,11 +39,14 @@ struct Mesh {
   size_t triangles() const { return indices.size() / 3; }
 };
 
+enum class Wrap { clamp, repeat, mirror };  // beyond the edges of a texture
+
 struct Texture {  // 8-bit sRGB RGBA, row 0 at the top (glTF's v = 0)
   std::string name;
   uint32_t width = 1, height = 1;
   std::vector<uint8_t> rgba;
-  bool repeat_u = true, repeat_v = true, nearest = false;
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  bool nearest = false;
 };
 
 struct Material {
@@ -58,17 +62,25 @@ struct Instance {
   std::string name;
   uint32_t mesh = 0;
   glm::dmat4 world_from_object{1.0};
-  bool moving = false;  // some animation moves it
+  bool moving = false;  // some animation moves it, or changes its mesh or its visibility
+  bool visible = true;  // hidden ones neither show nor cast shadows
 };
 
-struct Camera {  // right-handed, looks along -z; always projected with an infinite far plane
+struct Camera {  // right-handed, looks along -z
   std::string name;
   glm::dmat4 world_from_camera{1.0};  // rigid
   double fov_y = 0.7853981633974483;  // radians
   double near = 0.1;                  // world units
+  std::optional<double> far;          // world units; absent: no limit
   std::optional<double> aspect;       // width / height; absent: the viewport's
+  std::optional<glm::dvec2> span;     // orthographic: half width and height, world units
   bool moving = false;                // some animation moves it
 };
+
+// Half width and height of what an image of that aspect (width / height) shows of a camera: tangents, or
+// world units of an orthographic one. A camera of another aspect is wholly in the image, its shapes
+// unchanged.
+glm::dvec2 half_extent(const Camera& camera, double image_aspect);
 
 enum class LightType { spot, point, directional };
 

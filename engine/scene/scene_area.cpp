@@ -145,8 +145,8 @@ class AreaReader {
   uint32_t add(const Texture& texture) {
     const auto same = [&](const Texture& t) {
       return t.name == texture.name && t.width == texture.width && t.height == texture.height &&
-             t.nearest == texture.nearest && t.repeat_u == texture.repeat_u &&
-             t.repeat_v == texture.repeat_v && t.rgba == texture.rgba;
+             t.nearest == texture.nearest && t.wrap_u == texture.wrap_u && t.wrap_v == texture.wrap_v &&
+             t.rgba == texture.rgba;
     };
     const auto found = std::find_if(scene_.textures.begin(), scene_.textures.end(), same);
     if (found != scene_.textures.end()) return static_cast<uint32_t>(found - scene_.textures.begin());

@@ -24,14 +24,17 @@ const tinygltf::Value& member(const tinygltf::Value& object, const std::string& 
 
 class LightReader {
  public:
-  LightReader(const GltfFile& gltf, Scene& scene) : gltf_(gltf), scene_(scene) {}
+  // `animation`: may be null.
+  LightReader(const GltfFile& gltf, Scene& scene, Animation* animation,
+              const std::map<size_t, Track>& intensities)
+      : gltf_(gltf), scene_(scene), animation_(animation), intensities_(intensities) {}
 
-  void read(const std::vector<PlacedNode>& nodes, Animation* animation) {
+  void read(const std::vector<PlacedNode>& nodes) {
     for (size_t i = 0; i < nodes.size(); ++i) {
       const size_t before = scene_.lights.size();
-      read_node(nodes[i]);
-      for (size_t light = before; nodes[i].moving && light < scene_.lights.size(); ++light)
-        animation->lights.push_back({static_cast<uint32_t>(light), i, glm::dmat4(1.0)});
+      const std::optional<size_t> source = read_node(nodes[i]);
+      for (size_t light = before; animation_ != nullptr && light < scene_.lights.size(); ++light)
+        attach(static_cast<uint32_t>(light), i, nodes[i], source);
     }
     apply_scene_extras();
   }
@@ -41,14 +44,28 @@ class LightReader {
     scene_.warnings.messages.push_back(gltf_.file + ": " + place + ": " + what);
   }
 
-  void read_node(const PlacedNode& placed) {
+  // `source`: index of a punctual light in the file.
+  void attach(uint32_t light, size_t node, const PlacedNode& placed, std::optional<size_t> source) {
+    if (placed.moving) animation_->lights.push_back({light, node, glm::dmat4(1.0)});
+    const auto track = source ? intensities_.find(*source) : intensities_.end();
+    if (track == intensities_.end() && !placed.blinks) return;
+    ChangingLight changing{light, scene_.lights[light].intensity, {}, {}};
+    if (track != intensities_.end()) changing.track = track->second;
+    if (placed.blinks) changing.node = node;
+    if (!placed.visible) scene_.lights[light].intensity = 0;
+    animation_->changing_lights.push_back(std::move(changing));
+  }
+
+  // The light's index in the file; nothing when the node has none.
+  std::optional<size_t> read_node(const PlacedNode& placed) {
     const tinygltf::Node& node = gltf_.model.nodes[placed.node];
-    if (std::optional<Light> area = read_lights_area(gltf_, placed, scene_.warnings)) {
+    if (std::optional<Light> area = read_lights_area(gltf_, placed, scene_.warnings);
+        area && placed.ever_visible) {
       area->map_fov = widest_map;
       add(std::move(*area), node);
     }
     const auto extension = node.extensions.find("KHR_lights_punctual");
-    if (extension == node.extensions.end()) return;
+    if (extension == node.extensions.end() || !placed.ever_visible) return {};
     const std::string place = at("/nodes", placed.node);
     const tinygltf::Value reference = member(extension->second, "light");
     const int index = reference.IsInt() ? reference.GetNumberAsInt() : -1;
@@ -60,6 +77,7 @@ class LightReader {
     light.moving = placed.moving;
     set_area(light, node.extras, at(place, "extras"));
     add(std::move(light), node, "light" + std::to_string(index));
+    return static_cast<size_t>(index);
   }
 
   // `standard`: its name when neither it nor its node has one.
@@ -137,6 +155,8 @@ class LightReader {
 
   const GltfFile& gltf_;
   Scene& scene_;
+  Animation* animation_;
+  const std::map<size_t, Track>& intensities_;
   std::vector<bool> own_fov_;
 };
 
@@ -175,14 +195,18 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
       camera.near = view.znear;
     else
       scene.warnings.messages.push_back(place + "znear is not above 0, 0.1 is used");
+    if (std::isfinite(view.zfar) && view.zfar > camera.near)
+      camera.far = view.zfar;
+    else if (view.zfar != 0.0)
+      scene.warnings.messages.push_back(place + "zfar is not above znear, nothing is cut off");
     if (std::isfinite(view.aspectRatio) && view.aspectRatio > 0) camera.aspect = view.aspectRatio;
     scene.cameras.push_back(std::move(camera));
   }
 }
 
 void read_lights(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
-                 Animation* animation) {
-  LightReader(gltf, scene).read(nodes, animation);
+                 Animation* animation, const std::map<size_t, Track>& intensities) {
+  LightReader(gltf, scene, animation, intensities).read(nodes);
 }
 
 void ensure_camera(Scene& scene) {

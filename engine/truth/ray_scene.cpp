@@ -21,8 +21,8 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr double rounding = 1.0 / (1 << 20);  // of a coordinate: 16 times a float's largest relative error
-// Embree takes coordinates up to 1.8e18; less, so that sums of a few stay below. What a loaded scene places is
-// nearer to the world's origin than half of it (scene_limits.h).
+// Embree takes coordinates up to 1.8e18; less, so that sums of a few stay below. What a loaded scene places
+// is nearer to the world's origin than half of it (scene_limits.h).
 constexpr double largest = 1e16;
 // Shadow rays towards a point end just before it, so that a surface touching the light does not put it out.
 constexpr float before_light = 1.0f - 1e-6f;
@@ -244,7 +244,8 @@ RayScene::RayScene(const Scene& scene, const glm::dvec3& origin) : impl_(std::ma
     impl.geometries.push_back(geometry);
   }
   for (uint32_t id = 0; id < impl.geometries.size(); ++id)
-    if (impl.geometries[id].mesh->triangles() > 0) impl.attach(impl.geometries[id], id);
+    if (impl.geometries[id].mesh->triangles() > 0 && scene.instances[id].visible)
+      impl.attach(impl.geometries[id], id);
   impl.check("to load the scene");
   rtcCommitScene(impl.scene);
   impl.check("to build its hierarchy");

@@ -27,17 +27,21 @@ constexpr uint32_t max_samples = 1u << 20;
 struct PrimaryRays {
   glm::dvec3 eye{0};  // relative to the scene's origin
   glm::dvec3 right{0}, up{0}, forward{0};
-  double tan_x = 1, tan_y = 1, near = 0;
+  double tan_x = 1, tan_y = 1, near = 0, far = 0;
   uint32_t width = 1, height = 1;
 
   PrimaryRays(const Camera& camera, const glm::dvec3& origin, uint32_t w, uint32_t h)
-      : near(camera.near), width(w), height(h) {
+      : near(camera.near),
+        far(camera.far.value_or(std::numeric_limits<double>::infinity())),
+        width(w),
+        height(h) {
     eye = glm::dvec3(camera.world_from_camera[3]) - origin;
     right = glm::dvec3(camera.world_from_camera[0]);
     up = glm::dvec3(camera.world_from_camera[1]);
     forward = -glm::dvec3(camera.world_from_camera[2]);
-    tan_y = std::tan(0.5 * camera.fov_y);
-    tan_x = tan_y * camera.aspect.value_or(static_cast<double>(w) / h);
+    const double aspect = static_cast<double>(w) / h;
+    tan_y = half_extent(camera, aspect).y;
+    tan_x = tan_y * aspect;
   }
   glm::dvec3 direction(uint32_t x, uint32_t y) const {
     const double sx = 2 * (x + 0.5) / width - 1, sy = 1 - 2 * (y + 0.5) / height;
@@ -80,9 +84,9 @@ class PixelShader {
   PixelShader(const Scene& scene, const RayScene& rays, uint32_t samples)
       : scene_(scene), rays_(rays), samples_(samples), sobol_(table_size(scene, samples)) {
     for (const Light& light : scene.lights)
-      areas_.push_back(is_area(light, samples) ? std::optional<AreaSampler>(std::in_place, scene, light,
-                                                                            centre_of(light, rays))
-                                               : std::nullopt);
+      areas_.push_back(is_area(light, samples)
+                           ? std::optional<AreaSampler>(std::in_place, scene, light, centre_of(light, rays))
+                           : std::nullopt);
   }
 
   void shade(Reference& result, const SurfaceHit& hit, size_t pixel, NoiseSum& noise) const {
@@ -241,7 +245,7 @@ Reference ReferenceTracer::trace(const ReferenceSettings& settings) const {
   parallel_rows(settings.height, settings.progress, [&](uint32_t y) {
     for (uint32_t x = 0; x < settings.width; ++x) {
       const auto hit = rays->first_hit(primary.eye, primary.direction(x, y), primary.near);
-      if (!hit) continue;
+      if (!hit || hit->distance > primary.far) continue;
       const size_t pixel = size_t{y} * settings.width + x;
       store_surface(result, *hit, primary.eye, pixel);
       shader.shade(result, *hit, pixel, noise[y]);

@@ -152,7 +152,8 @@ void hash_texture(KeyHash& hash, const Texture& t) {
   hash.value(t.width);
   hash.value(t.height);
   hash.array(t.rgba);
-  for (const bool flag : {t.repeat_u, t.repeat_v, t.nearest}) hash.value(uint8_t{flag});
+  for (const Wrap wrap : {t.wrap_u, t.wrap_v}) hash.value(static_cast<uint8_t>(wrap));
+  hash.value(uint8_t{t.nearest});
 }
 
 // Intensity and colour do not change visibility.
@@ -173,6 +174,7 @@ void hash_light(KeyHash& hash, const Light& light) {
 void hash_view(KeyHash& hash, const Camera& camera, const ReferenceSettings& settings) {
   hash.values(camera.world_from_camera);
   for (const double v : {camera.fov_y, camera.near, camera.aspect.value_or(-1.0)}) hash.value(v);
+  if (camera.far) hash.value(*camera.far);
   for (const uint32_t v : {settings.width, settings.height, settings.samples}) hash.value(v);
 }
 
@@ -247,6 +249,7 @@ std::string reference_key(const Scene& scene, const ReferenceSettings& settings)
   for (const Instance& instance : scene.instances) {
     hash.value(instance.mesh);
     hash.values(instance.world_from_object);
+    if (!instance.visible) hash.value(uint8_t{0});
   }
   for (const Light& light : scene.lights) hash_light(hash, light);
   hash_view(hash, scene.cameras[settings.camera], settings);

@@ -3,7 +3,9 @@
 #include "engine/graph/shadow_free.h"
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
 #include "engine/render/render_settings.h"
+#include "engine/scene/camera.h"
 
 namespace gnomon {
 namespace {
@@ -36,6 +38,7 @@ class GBuffer : public Pass {
     state.depth_test = state.depth_write = true;
     state.depth_compare = e.settings().reversed_z ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
     far_ = e.settings().reversed_z ? 0.0f : 1.0f;
+    if (far_plane_cuts(e.scene(), e.gpu_scene().camera())) state.defines.emplace_back("FAR_PLANE", "1");
     pipelines_.opaque = e.raster(state);
     state.defines.emplace_back("MASKED", "1");
     pipelines_.masked = e.raster(state);

@@ -59,8 +59,7 @@ void CasterLayers::prepare(Environment& e, const std::string& map) {
 CasterLayers::Needed CasterLayers::needed(const Scene& scene, const ViewSet& views) const {
   if (all_) return Needed(views.views.size(), std::vector<bool>(scene.instances.size(), true));
   const Camera& camera = scene.cameras[camera_];
-  return casters_in_view(scene, camera, camera.aspect.value_or(aspect_), views.views, size_, reach_,
-                         shadowless_);
+  return casters_in_view(scene, camera, aspect_, views.views, size_, reach_, shadowless_);
 }
 
 void CasterLayers::draw_later(const Needed& needed) {

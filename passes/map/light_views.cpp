@@ -76,7 +76,7 @@ class LightViews : public Pass {
     if (split_.count == 1) return fitted_;
     const Camera& camera = scene.camera();
     const glm::vec4& viewport = scene.frame().viewport;
-    const double aspect = camera.aspect.value_or(double(viewport.x) / viewport.y);
+    const double aspect = double(viewport.x) / viewport.y;
     std::vector<LightView> views;
     for (const LightView& whole : fitted_)
       for (const LightView& part : cascades(scene.scene(), camera, aspect, whole, split_))

@@ -53,8 +53,7 @@ Points separating_axes(const Points& hull) {
 
 std::vector<glm::dvec3> near_pyramid(const Camera& camera, double aspect) {
   constexpr double kMargin = 1.01;
-  const double y = kMargin * camera.near * std::tan(0.5 * camera.fov_y),
-               x = y * camera.aspect.value_or(aspect);
+  const double y = kMargin * camera.near * half_extent(camera, aspect).y, x = y * aspect;
   const double z = -kMargin * camera.near;
   std::vector<glm::dvec3> points;
   for (const glm::dvec3 p : {glm::dvec3(0.0), {-x, -y, z}, {x, -y, z}, {-x, y, z}, {x, y, z}})

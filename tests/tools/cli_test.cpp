@@ -326,6 +326,33 @@ TEST_F(CliTest, CompareRefusesWhatDoesNotMatch) {
   EXPECT_EQ(run("compare small.exr other.exr").status, 2);
 }
 
+// Images of other programs have other channels.
+TEST_F(CliTest, CompareTakesAnotherChannelByName) {
+  Image truth(2, 1, {"Y"}), colors(2, 1, {"R", "G", "B"}), layer(2, 1, {"shadow.Y"});
+  truth.data = {0, 1};
+  colors.data = {0, 1, 0, 1, 0, 1};
+  layer.data = {0, 1};
+  write_exr(folder_ / "truth.exr", truth);
+  write_exr(folder_ / "colors.exr", colors);
+  write_exr(folder_ / "layer.exr", layer);
+  const Outcome without = run("compare colors.exr truth.exr");
+  EXPECT_EQ(without.status, 2);
+  EXPECT_NE(without.error.find("no channel 'Y'; it has: R, G, B"), std::string::npos) << without.error;
+  EXPECT_NE(without.error.find("--channel"), std::string::npos);
+  EXPECT_EQ(run("compare colors.exr truth.exr --channel luminance --max-rmse 0.001").status, 0);
+  EXPECT_EQ(run("compare layer.exr truth.exr --channel shadow --max-rmse 0").status, 0);
+  EXPECT_EQ(run("compare layer.exr layer.exr --channel shadow.Y --max-rmse 0").status, 0);
+  EXPECT_EQ(run("compare layer.exr truth.exr --channel sun").status, 2);
+}
+
+TEST_F(CliTest, SceneExportIsReadBack) {
+  EXPECT_EQ(run("scene export fence --out fence.glb").status, 0);
+  const Outcome checked = run("check fence.glb");
+  EXPECT_EQ(checked.status, 0) << checked.error;
+  EXPECT_EQ(run("scene export fence --out fence.gltf").status, 2);
+  EXPECT_EQ(run("scene export absent --out fence2.glb").status, 2);
+}
+
 TEST_F(CliTest, CompareFailsOnValuesThatAreNotFinite) {
   Image result = visibility_image(4, 2, 1);
   result.at(1, 1) = NAN;

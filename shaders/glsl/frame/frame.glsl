@@ -10,7 +10,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
   vec4 ray_corner;  // relative position at view depth 1 of the image's top left corner
   vec4 ray_dx, ray_dy;
   vec4 viewport;    // width, height, 1/width, 1/height
-  vec4 depth;       // near plane, 1 when reversed z
+  vec4 depth;       // near plane, 1 when reversed z, far plane (0: none) beyond which nothing is drawn
   uvec4 counts;     // lights, unused, frame index
   mat4 previous_clip_from_relative;  // the previous frame's camera; positions relative to this frame's eye
 } frame;

@@ -34,6 +34,9 @@ vec3 geometric_normal() {
 }
 
 void main() {
+#ifdef FAR_PLANE  // the projection's is infinitely far
+  if (gl_FragCoord.w * frame.depth.z < 1.0) discard;
+#endif
   vec4 color = in_base_color * in_color * texture(base_color_texture, in_uv);
 #ifdef MASKED
   if (color.a < in_normal_columns[0].w) discard;

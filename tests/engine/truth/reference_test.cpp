@@ -298,7 +298,7 @@ TEST(Reference, MirroredInstancesKeepTheirFront) {
 Texture alpha_texture(uint32_t w, uint32_t h, const std::vector<uint8_t>& alpha) {
   Texture t;
   t.width = w, t.height = h;
-  t.repeat_u = t.repeat_v = false;
+  t.wrap_u = t.wrap_v = Wrap::clamp;
   for (const uint8_t a : alpha) t.rgba.insert(t.rgba.end(), {255, 188, 0, a});
   return t;
 }
