@@ -26,10 +26,12 @@ class DistancePenumbra : public Pass {
     d.input("depth", Access::sampled, false, "the camera's device depth");
     d.input("geometric", Access::sampled, false, "octahedral geometric normal");
     read_penumbra_traits(d, "nearest");
-    d.optional_input(
-        "width", Access::sampled, true,
-        "of the penumbra at each pixel, world units, instead of one for all: a silhouette pixel's "
-        "counts for those that it is nearest to (world metric)");
+    const bool soft =
+        d.optional_input(
+             "width", Access::sampled, true,
+             "of the penumbra at each pixel, world units, instead of one for all: a silhouette pixel's "
+             "counts for those that it is nearest to (world metric)")
+            .has_value();
     const bool screen = d.choice("metric", "world", {"world", "screen"},
                                  "distances in the world or in the image") == "screen";
     const Value* pixels = d.trait("nearest", "pixels");
@@ -39,7 +41,7 @@ class DistancePenumbra : public Pass {
     d.inout("visibility", Access::storage_read | Access::storage_write, true,
             "in: hard shadow; out: 0 in umbra, 1 lit; a layer a light");
     d.optional_input_behind("views", "visibility", Access::uniform, "what the shadow map's layers show");
-    makes_shadows(d, "visibility", ShadowKind::filtered);
+    makes_shadows(d, "visibility", soft ? ShadowKind::soft : ShadowKind::filtered);
   }
   void prepare(Environment& e) override {
     shade_ = e.compute("distance/distance_penumbra.glsl");

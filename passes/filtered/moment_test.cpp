@@ -43,7 +43,7 @@ class MomentTest : public Pass {
              "four_moments: depth unbounded, or known to lie in its range");
     declare_thresholds(d);
     d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
-    makes_shadows(d, "visibility", ShadowKind::filtered);
+    makes_shadows(d, "visibility", soft ? ShadowKind::soft : ShadowKind::filtered);
   }
 
   void prepare(Environment& e) override {

@@ -45,7 +45,7 @@ class PercentageCloserFilter : public Pass {
                                 "or in umbra; the result is the same");
     if (min_max) MinMaxMap::declare(d, d.find("shadow_map")->image);
     d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
-    makes_shadows(d, "visibility", ShadowKind::filtered);
+    makes_shadows(d, "visibility", soft ? ShadowKind::soft : ShadowKind::filtered);
   }
   void prepare(Environment& e) override {
     const bool soft = e.connected("width");

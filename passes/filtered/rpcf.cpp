@@ -24,17 +24,19 @@ class RevectorizationBasedFilter : public Pass {
     const int64_t kernel = declare_kernel(d);
     const int64_t walk =
         d.integer("max_size", 16, 1, 255, "texels", "longest walk along a silhouette, in each direction");
-    d.optional_input(
-        "width", Access::sampled, true,
-        "of the penumbra at the receiver, world units: the kernel is then as wide as the light's "
-        "larger side of that width, in whole odd texels, and 'kernel' the widest");
+    const bool soft =
+        d.optional_input(
+             "width", Access::sampled, true,
+             "of the penumbra at the receiver, world units: the kernel is then as wide as the light's "
+             "larger side of that width, in whole odd texels, and 'kernel' the widest")
+            .has_value();
     d.reads_around("shadow_map", uint32_t(kernel / 2 + walk + 3));
     d.flag("reuse", true, "samples share their neighbours' silhouette walks; the result is the same");
     d.flag("list", true,
            "only pixels whose kernel touches a silhouette are filtered; the result is the same");
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
-    makes_shadows(d, "visibility", ShadowKind::filtered);
+    makes_shadows(d, "visibility", soft ? ShadowKind::soft : ShadowKind::filtered);
     declare_pixel_list(d, visibility.extent, "pixels whose kernel touches one light's silhouette");
   }
 
