@@ -48,7 +48,9 @@ TEST_P(AreaBias, OneSampleIsTestedWithoutAcne) {
     EXPECT_GT(e.shadowed, 200u);
     // Without its front faces the square, which is open, casts no shadow.
     const bool casts = std::string(GetParam().bias) != "back_face";
-    if (casts) EXPECT_LT(e.share(), 0.02) << "light type " << int(type);
+    if (casts) {
+      EXPECT_LT(e.share(), 0.02) << "light type " << int(type);
+    }
     // As the hard technique has it, but for rounding.
     const Frame hard = render("shadow_mapping", scene, s,
                               {{"shadow_map", int64_t{256}},
