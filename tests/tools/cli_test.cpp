@@ -296,24 +296,6 @@ TEST_F(CliTest, NamesCannotSteerTheTerminal) {
   EXPECT_NE(outcome.error.find("\\x1b"), std::string::npos) << outcome.error;
 }
 
-TEST_F(CliTest, WarningsOfTheCacheAreNotResults) {
-  fs::create_directories(folder_ / "cache");
-  const std::string command = "reference fence --size 16x9 --out x.exr";
-  const auto with_cache = [&] {
-    setenv("GNOMON_CACHE", (folder_ / "cache").c_str(), 1);
-    const Outcome outcome = run(command);
-    unsetenv("GNOMON_CACHE");
-    return outcome;
-  };
-  ASSERT_EQ(with_cache().status, 0);
-  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "cache"))
-    if (entry.path().extension() == ".exr") std::ofstream(entry.path()) << "broken";
-  const Outcome outcome = with_cache();
-  EXPECT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_EQ(outcome.out.find("traced again"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.error.find("gnomon: warning: "), std::string::npos) << outcome.error;
-}
-
 TEST_F(CliTest, CompareRefusesWhatDoesNotMatch) {
   write_exr(folder_ / "small.exr", visibility_image(4, 2, 1));
   write_exr(folder_ / "large.exr", visibility_image(8, 2, 1));

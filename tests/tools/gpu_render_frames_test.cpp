@@ -147,6 +147,21 @@ TEST_F(RenderFrames, WithoutCountedPixelsTheErrorIsEmptyAndSaysWhy) {
             std::string::npos);
 }
 
+TEST_F(RenderFrames, WarningsOfTheCacheAreNotResults) {
+  const std::string render =
+      "render square_plane --graph shadow_mapping --size 16x9 --repeat 1 --error --out out";
+  ASSERT_EQ(run(render), 0) << text("error.txt");
+  size_t broken = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "cache"))
+    if (entry.path().extension() == ".exr") std::ofstream(entry.path()) << "broken", ++broken;
+  ASSERT_EQ(broken, 1u);
+  ASSERT_EQ(run(render), 0) << text("error.txt");
+  EXPECT_EQ(text("out.txt").find("traced again"), std::string::npos) << text("out.txt");
+  const size_t warning = text("error.txt").find("gnomon: warning: ");
+  ASSERT_NE(warning, std::string::npos) << text("error.txt");
+  EXPECT_NE(text("error.txt").find("traced again", warning), std::string::npos) << text("error.txt");
+}
+
 TEST_F(RenderFrames, SuitesHaveSequences) {
   const std::string scene = std::string(GNOMON_TEST_SOURCE_DIR) + "/assets/scenes/moving_light.glb";
   std::ofstream(folder_ / "suite.json") << R"({ "schema": 1, "scenes": [")" << scene

@@ -594,7 +594,7 @@ TEST_F(GpuRenderer, GraphsThatDrawNoSceneNeedNone) {
   without.render(TimingMode::none);
   EXPECT_EQ(plane(without), plane(with));
   const std::string draws =
-      file_with(R"({"id": "gbuffer", "type": "gbuffer"})", R"({"visibility": "gbuffer.depth"})");
+      file_with(R"({"id": "gbuffer", "type": "gbuffer"})", R"({"depth": "gbuffer.depth"})");
   const std::string message = error_of([&] {
     Renderer(device(), nullptr, parse_graph(draws, "test.json"), settings()).render(TimingMode::none);
   });
