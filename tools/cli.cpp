@@ -39,7 +39,8 @@ Exit status: 0 done, 1 a comparison or measurement failed, 2 bad input (nothing 
 Run 'gnomon COMMAND --help' for the options of a command.)";
 
 // Lines of one message after the first are set in, so that none passes for a message of its own.
-void print_error(const std::string& text) {
+void print_error(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();  // of compilers' logs
   const char* start = "gnomon: ";
   size_t begin = 0;
   while (begin <= text.size()) {

@@ -57,8 +57,8 @@ void export_command(const Options& options) {
   const std::shared_ptr<const Scene> scene = open_scene(options.file, 1);
   if (options.out.has_parent_path()) fs::create_directories(options.out.parent_path());
   write_text(options.out, to_glb(posed(*scene, options.time)));
-  fmt::print("{}: {} meshes, {} instances, {} triangles\n", options.out.string(), scene->meshes.size(),
-             scene->instances.size(), scene->triangles());
+  print("{}: {} meshes, {} instances, {} triangles\n", options.out.string(), scene->meshes.size(),
+        scene->instances.size(), scene->triangles());
 }
 
 std::string generator_list() {
