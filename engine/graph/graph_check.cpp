@@ -169,8 +169,10 @@ class NodeCheck {
   }
 
   void check_required() {
-    const bool reported = std::any_of(node_.from.begin(), node_.from.end(),
-                                  [&](uint32_t source) { return !graph_.nodes[source].sound; });
+    const bool unknown = node_.from.size() != node_.node->from.size();  // reported when it was connected
+    const bool reported = unknown || std::any_of(node_.from.begin(), node_.from.end(), [&](uint32_t source) {
+                            return !graph_.nodes[source].sound;
+                          });
     for (const Port& port : node_.declaration.ports()) {
       const bool input = port.direction == Direction::in || port.direction == Direction::inout;
       const bool by_itself = !port.beside.empty();

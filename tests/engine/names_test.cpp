@@ -32,6 +32,8 @@ constexpr Own own_words[] = {
     {"scene", "width", "the same"},
     {"scene", "color", "a member of glTF's lights"},
     {"scene", "source", "a member of glTF's textures"},
+    {"scene", "weights", "what glTF's animations move"},
+    {"scene", "filter", "a member of glTF's compressed buffer views"},
     {"truth", "bias", "a metric"},
     {"truth", "pixels", "a metric's unit"},
     {"truth", "samples", "a member of a reference's file"},
@@ -57,7 +59,8 @@ void add_ports(const std::string& type, Names& names) {
     return d.param_specs();
   };
   for (const ParamSpec& spec : add({})) {
-    if (spec.type == ParamType::flag && spec.from.empty()) add({{spec.name, !std::get<bool>(spec.default_value)}});
+    if (spec.type == ParamType::flag && spec.from.empty())
+      add({{spec.name, !std::get<bool>(spec.default_value)}});
     if (spec.from.empty())
       for (const std::string& choice : spec.choices) add({{spec.name, choice}});
   }

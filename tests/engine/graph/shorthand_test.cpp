@@ -104,7 +104,7 @@ TEST_F(Shorthand, FromThatCannotBeMeantIsAnError) {
   expect_error(
       file_with(R"({"id": "alpha", "type": "t_target"}, {"id": "m", "type": "t_modify", "from": "alpa"})",
                 "m.target"),
-      {"/passes/1/from", "unknown pass \"alpa\"", "alpha"});
+      {"/passes/1/from", "unknown pass 'alpa'", "alpha"});
   expect_error(file_with(R"({"id": "m", "type": "t_modify", "from": "m"})", "m.target"),
                {"a cycle", "'m' -> 'm'"});
   expect_error(
@@ -113,7 +113,7 @@ TEST_F(Shorthand, FromThatCannotBeMeantIsAnError) {
   expect_error(
       file_with(R"({"id": "a", "type": "t_target"}, {"id": "m", "type": "t_modify", "from": ["a", "a"]})",
                 "m.target"),
-      {"/passes/1/from", "names \"a\" twice"});
+      {"/passes/1/from", "names 'a' twice"});
 }
 
 const std::string width_and_mode = R"("vars": {"width": 5, "mode": "tent"}, )";
@@ -134,11 +134,11 @@ TEST_F(Shorthand, VarsThatDoNotFitAreErrors) {
                          more + "}",
                      "f.result", vars);
   };
-  expect_error(with(R"("vars": ["width", "mood"])"), {"/passes/1/vars", "unknown variable \"mood\"", "mode"});
+  expect_error(with(R"("vars": ["width", "mood"])"), {"/passes/1/vars", "unknown variable 'mood'", "mode"});
   expect_error(with(R"("params": {"width": "$width"}, "vars": ["width", "mode"])"),
-               {"/passes/1/vars", "parameter \"width\" is set twice"});
+               {"/passes/1/vars", "parameter 'width' is set twice"});
   expect_error(with(R"("vars": ["wide"])", R"("vars": {"wide": 5}, )"),
-               {"/passes/1/vars", "unknown parameter \"wide\" of 't_filter'"});
+               {"/passes/1/vars", "unknown parameter 'wide' of 't_filter'"});
   expect_error(with(R"("vars": "width")", R"("vars": {"width": 99}, )"),
                {"/passes/1/vars", "'width' is 99: must be in 1..31 texels"});
 }
