@@ -25,7 +25,7 @@ const Scene& floor_scene() {
   static const Scene scene = [] {
     Scene s;
     analytic::add(s, analytic::square(7), {0, 0, 0});
-    analytic::add(s, analytic::square(0.01f), {6.9, 3, 6.9});
+    analytic::add(s, analytic::square(0.01f), {0.5, 3, 0.5});
     s.cameras.push_back(analytic::camera({2.2, 5.1, 2.7}, {0.1, 0, 0.2}));
     s.lights.push_back(analytic::light(LightType::spot, {0, kHeight, 0}));
     s.lights[0].area = AreaLight{};
