@@ -170,7 +170,7 @@ std::optional<Texture> read_image(const GltfFile& gltf, size_t index, SceneWarni
   if (why.empty()) return result;
   const std::string from = image.uri.empty() ? "" : " '" + shown_uri(image.uri) + "'";
   add_warning(warnings, gltf, at("/images", index),
-              "the image" + from + " cannot be read: " + why + "; white is used");
+              "the image" + from + " cannot be read; white is used (" + why + ")");
   return {};
 }
 

@@ -188,7 +188,7 @@ TEST(GltfFile, DepthOfJsonIsLimited) {
   EXPECT_EQ(load(draft).triangles(), 2u);
 }
 
-// Twice the nodes take about twice the time: what is quadratic takes four times, and a hundred times here.
+// Ten times the nodes take about ten times the time; what is quadratic takes a hundred times.
 TEST(GltfFile, ManyNodesAreReadInLinearTime) {
   const auto seconds = [](size_t count) {
     Draft draft;
@@ -203,7 +203,9 @@ TEST(GltfFile, ManyNodesAreReadInLinearTime) {
     EXPECT_EQ(load_scene(file).triangles(), 2u);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  EXPECT_LT(seconds(100000), 100 * std::max(seconds(4000), 1e-3));
+  double few = seconds(20000);
+  for (int i = 0; i < 2; ++i) few = std::min(few, seconds(20000));
+  EXPECT_LT(seconds(200000), 40 * few);
 }
 
 }  // namespace
