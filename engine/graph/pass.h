@@ -131,7 +131,7 @@ class Declaration {
 
   Declaration() = default;  // listing: defaults, nothing connected
   Declaration(Setting setting, Values given, Inputs inputs)
-      : setting_(setting), given_(std::move(given)), inputs_(std::move(inputs)) {}
+      : setting_(std::move(setting)), given_(std::move(given)), inputs_(std::move(inputs)) {}
 
   const Setting& setting() const { return setting_; }
 

@@ -96,13 +96,13 @@ TEST(SourceRules, TheShaderLibraryIncludesItselfAlone) {
 
 constexpr size_t kMostLines = 400, kMostFunctionLines = 60;
 
-TEST(SourceRules, DISABLED_FilesAreNotLongerThanCanBeOverlooked) {
+TEST(SourceRules, FilesAreNotLongerThanCanBeOverlooked) {
   for (const std::string& file :
        files({"engine", "passes", "bench", "tools", "shaders"}, {".cpp", ".h", ".glsl"}))
     EXPECT_LE(lines_of(file).size(), kMostLines) << file;
 }
 
-TEST(SourceRules, DISABLED_FunctionsAreNotLongerThanCanBeOverlooked) {
+TEST(SourceRules, FunctionsAreNotLongerThanCanBeOverlooked) {
   for (const std::string& file : files(kProgram, kCode))
     for (const Function& f : functions(text_of(file)))
       EXPECT_LE(f.lines(), kMostFunctionLines) << file << ":" << f.first << ": " << f.head;
