@@ -14,7 +14,7 @@ SceneSizes scene_sizes(const Scene& scene) {
     const uint64_t triangles = mesh.triangles();
     sizes.vertices += mesh.positions.size();
     sizes.triangles += triangles;
-    sizes.edges += mesh.watertight ? (3 * triangles + 1) / 2 : 3 * triangles;
+    sizes.edges += 3 * triangles;
     sizes.sides += 3 * triangles;
   }
   for (uint64_t* count : {&sizes.vertices, &sizes.triangles, &sizes.edges, &sizes.sides})

@@ -13,8 +13,8 @@ struct SceneSizes {
   uint64_t instances = 1;
   uint64_t vertices = 3;
   uint64_t triangles = 1;
-  // At most so many edges, vertices of equal position counted as one: exact for watertight meshes, 3 a
-  // triangle for others.
+  // At most so many edges, 3 a triangle: half as many of a watertight mesh, if it is as watertight as it
+  // says. Vertices of equal position are one.
   uint64_t edges = 3;
   // Sides of all shadow volumes of one light, at most: an edge has one for each of its triangles, as those of
   // an open mesh do not cancel out.

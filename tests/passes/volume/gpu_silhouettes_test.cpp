@@ -40,6 +40,17 @@ class ShowEdges : public Pass {
 };
 GNOMON_PASS("test_show_edges", ShowEdges);
 
+// Its poles are one point each, to the bit.
+Mesh closed_sphere() {
+  constexpr int kRings = 12, kSegments = 24;
+  Mesh mesh = analytic::sphere(1, kRings, kSegments);
+  for (size_t i = 0; i < mesh.positions.size(); ++i) {
+    const size_t ring = i / kSegments;
+    if (ring == 0 || ring == kRings) mesh.positions[i] = {0, ring == 0 ? 1 : -1, 0};
+  }
+  return mesh;
+}
+
 struct Edge {
   uint32_t a, b, instance, mesh_edge;
 };
@@ -108,7 +119,7 @@ TEST(Silhouettes, AClosedMeshHasClosedLoopsWhereFrontMeetsBack) {
   const glm::dvec3 at(1.5, 7, 1);
   for (const LightType type : {LightType::spot, LightType::point, LightType::directional}) {
     Scene scene;
-    analytic::add(scene, analytic::sphere(1, 12, 24), {0, 0, 0});
+    analytic::add(scene, closed_sphere(), {0, 0, 0});
     analytic::add(scene, analytic::square(9), {0, -2, 0});
     scene.cameras.push_back(analytic::camera({6, 8, 7}, {0, 0, 0}));
     scene.lights.push_back(analytic::light(type, at));
@@ -153,7 +164,7 @@ TEST(Silhouettes, AFoldBoundsTwice) {
 
 TEST(Silhouettes, EveryLightHasItsOwn) {
   Scene scene;
-  analytic::add(scene, analytic::sphere(1, 12, 24), {0, 2, 0});
+  analytic::add(scene, closed_sphere(), {0, 2, 0});
   analytic::add(scene, analytic::square(9), {0, 0, 0});
   scene.cameras.push_back(analytic::camera({6, 8, 7}, {0, 1, 0}));
   const Light lights[] = {analytic::light(LightType::spot, {1.5, 7, 1}),
