@@ -39,7 +39,8 @@ vec2 pyramid_range(ivec2 low, ivec2 high, int layer) {
   high = clamp(high, ivec2(0), last);
   ivec2 texels = high - low + 1;
   int level = clamp(pyramid_level(max(texels.x, texels.y)) - FINER, 0, textureQueryLevels(pyramid) - 1);
-  ivec2 blocks = textureSize(pyramid, level).xy;
+  // Not textureSize() of the level: lavapipe answers all invocations of a subgroup with that of the first.
+  ivec2 blocks = max(textureSize(pyramid, 0).xy >> level, ivec2(1));
   ivec2 from = pyramid_block(low, level, blocks), to = pyramid_block(high, level, blocks);
   vec2 range = vec2(1.0, 0.0);
   int y = from.y;
