@@ -44,8 +44,8 @@ Scene scene_of_all_draws() {
   return scene;
 }
 
-// With everything kept all draws have the general shader.
-TEST(GBuffer, DrawsOfOneColourHaveTheSameBits) {
+// With everything kept all draws test their coverage.
+TEST(GBuffer, DrawsWithoutAMaskHaveTheSameBits) {
   const auto scene = std::make_shared<const Scene>(scene_of_all_draws());
   for (const bool reversed_z : {true, false})
     for (const char* port : {"gbuffer.depth", "gbuffer.normal", "gbuffer.geometric", "gbuffer.albedo"}) {
@@ -60,6 +60,7 @@ TEST(GBuffer, DrawsOfOneColourHaveTheSameBits) {
         images[keep_all] = renderer.read(port);
       }
       EXPECT_EQ(images[0].data, images[1].data);
+      for (const float value : images[0].data) ASSERT_TRUE(std::isfinite(value));
     }
 }
 

@@ -173,7 +173,7 @@ std::string screen_filter(const std::string& type, double world, bool image) {
 TEST(Width, ScreenFiltersTakeWhatItCoversAtThePixelsDepth) {
   const Image depth = random_depth(4, 5);
   for (const char* type : {"mean_filter", "bilateral_filter"})
-    for (const double world : {0.05, 0.3, 0.8}) {  // up to 12 pixels
+    for (const double world : {0.15, 0.3, 0.8}) {  // 2 to 12 pixels
       const auto is = run(depth, world, screen_filter(type, world, true));
       EXPECT_LE(largest_difference(is, run(depth, 0, screen_filter(type, world, false))), 1e-4)
           << type << ' ' << world;
