@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/sobol.h"
+#include "engine/image/srgb.h"
 #include "engine/scene/surface.h"
 
 namespace gnomon {

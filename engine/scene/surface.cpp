@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/image/srgb.h"
+
 namespace gnomon {
 namespace {
 
@@ -70,18 +72,6 @@ float texture_alpha(const Texture& texture, const glm::vec2& uv) {
 }
 
 }  // namespace
-
-float srgb_decode(uint8_t byte) {
-  static const auto table = [] {
-    std::array<float, 256> values{};
-    for (int i = 0; i < 256; ++i) {
-      const double c = i / 255.0;
-      values[i] = float(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-    }
-    return values;
-  }();
-  return table[byte];
-}
 
 glm::vec4 base_color(const Scene& scene, const Mesh& mesh, uint32_t triangle, const Barycentric& weights) {
   const Material& material = scene.materials[mesh.material];

@@ -8,7 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/format.h"
-#include "engine/scene/surface.h"
+#include "engine/image/srgb.h"
 
 namespace gnomon {
 namespace {
