@@ -23,8 +23,8 @@ struct Reference {
     edge_on = 4  // the geometric normal is at right angles to the light's direction, within least_facing
   };
   // Cosine of the angle to the light below which rounding decides whether a surface faces it: twice the
-  // largest error of an octahedral normal of 16 bits (6.5e-5), which the G-buffer rounds the triangle's to once
-  // more.
+  // largest error of an octahedral normal of 16 bits (6.5e-5), which the G-buffer rounds the triangle's to
+  // once more.
   static constexpr double least_facing = 1.4e-4;
 
   uint32_t width = 0, height = 0, lights = 0, samples = 1;  // samples per light (1: point, hard)
