@@ -1,6 +1,9 @@
+// The command line: its commands, and exit statuses for what goes wrong.
 #include "tools/cli.h"
 
 #include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,15 +11,18 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <new>
+#include <nlohmann/json.hpp>
 
-#include "bench/run/run_json.h"
+#include "bench/run/row.h"
 #include "engine/base/config.h"
 #include "engine/base/error.h"
+#include "engine/base/failure.h"
 #include "engine/base/interrupt.h"
 #include "engine/base/resource_root.h"
 #include "engine/graph/graph.h"
+#include "engine/image/image.h"
 #include "engine/scene/area_light.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -34,12 +40,16 @@ constexpr const char* footer = R"(Examples:
 Exit status: 0 done, 1 a comparison or measurement failed, 2 bad input (nothing is written).
 Run 'gnomon COMMAND --help' for the options of a command.)";
 
-void print_error(const std::string& text) {
+// Lines of one message after the first are set in, so that none passes for a message of its own.
+void print_error(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();  // of compilers' logs
+  const char* start = "gnomon: ";
   size_t begin = 0;
   while (begin <= text.size()) {
     const size_t end = std::min(text.find('\n', begin), text.size());
-    fmt::print(stderr, "gnomon: {}\n", text.substr(begin, end - begin));
+    print(stderr, "{}{}\n", start, text.substr(begin, end - begin));
     begin = end + 1;
+    start = "gnomon:   ";
   }
 }
 
@@ -68,7 +78,7 @@ int parse(CLI::App& app, int argc, const char* const* argv) {
                             std::string(error.what()).find("subcommand") != std::string::npos;
     const std::string unknown = no_command ? unknown_command(app, argc, argv) : std::string();
     print_error(unknown.empty() ? error.what() : unknown);
-    fmt::print(stderr, "Run 'gnomon --help' for the commands, 'gnomon COMMAND --help' for their options.\n");
+    print(stderr, "Run 'gnomon --help' for the commands, 'gnomon COMMAND --help' for their options.\n");
     return exit_bad_input;
   }
 }
@@ -97,23 +107,39 @@ int run(int argc, const char* const* argv) {
   return parsed == exit_done ? status : parsed;
 }
 
+// What a command was given to work on: "render fence"; for errors that name no place.
+std::string input_of(int argc, const char* const* argv) {
+  std::string text;
+  for (int i = 1; i < argc && argv[i][0] != '-'; ++i)
+    text += (text.empty() ? "" : " ") + std::string(argv[i]);
+  return text;
+}
+
 }  // namespace
 
+void print_problems(const std::vector<Problem>& problems) {
+  for (const Problem& problem : problems) print_error(to_string(problem));
+}
+
+void write_rows(const fs::path& file, const std::vector<Row>& rows) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Row& row : rows) list.push_back(to_json(row));
+  write_text(file, list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
 int run_cli(int argc, const char* const* argv) {
+  // Standard output is for results.
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("gnomon", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  spdlog::set_pattern("gnomon: warning: %v");
   try {
     return run(argc, argv);
-  } catch (const Error& error) {
-    print_error(error.what());
-  } catch (const std::bad_alloc&) {
-    print_error("out of memory (a smaller --size or shadow map needs less)");
-  } catch (const std::exception& error) {
-    print_error(error.what());
   } catch (const Interrupted& interrupted) {
     print_error(fmt::format("ended by {}", interrupted.signal == SIGINT ? "SIGINT" : "SIGTERM"));
     constexpr int killed = 128;  // as shells report it
     return killed + interrupted.signal;
   } catch (...) {
-    print_error("an unknown error");
+    print_problems(problems_of(std::current_exception(), input_of(argc, argv)));
   }
   return exit_bad_input;
 }
@@ -217,10 +243,10 @@ std::shared_ptr<Device> open_device(const DeviceFlags& flags) {
 
 int report_validation(const Device& device) {
   const std::vector<std::string>& messages = validation_messages(device);
-  for (const std::string& message : messages) fmt::print(stderr, "gnomon: validation: {}\n", message);
+  for (const std::string& message : messages) print(stderr, "gnomon: validation: {}\n", message);
   return messages.empty() ? exit_done : exit_failed;
 }
 
-void warn(const std::string& line) { fmt::print(stderr, "gnomon: warning: {}\n", line); }
+void warn(const std::string& line) { print(stderr, "gnomon: warning: {}\n", line); }
 
 }  // namespace gnomon

@@ -20,6 +20,9 @@ class App;
 
 namespace gnomon {
 
+struct Problem;  // engine/base/error.h
+struct Row;      // bench/run/row.h
+
 // Exit statuses of the program.
 enum ExitStatus : int {
   exit_done = 0,
@@ -70,6 +73,9 @@ std::shared_ptr<Device> open_device(const DeviceFlags& flags);
 // Prints the layers' messages; exit_failed when there is one, exit_done otherwise.
 int report_validation(const Device& device);
 
-void warn(const std::string& line);  // "gnomon: warning: line" on stderr
+void warn(const std::string& line);                         // "gnomon: warning: line" on stderr
+void print_problems(const std::vector<Problem>& problems);  // "gnomon: FILE: ..." on stderr
+// Result rows as one JSON array.
+void write_rows(const std::filesystem::path& file, const std::vector<Row>& rows);
 
 }  // namespace gnomon

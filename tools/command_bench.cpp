@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <ctime>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <tuple>
 
-#include "bench/error/truth.h"
 #include "bench/report/compare.h"
 #include "bench/report/table.h"
 #include "bench/run/harness.h"
@@ -16,15 +16,14 @@
 #include "bench/run/stage.h"
 #include "engine/base/error.h"
 #include "engine/base/interrupt.h"
-#include "engine/image/image.h"
 #include "engine/vulkan/shader.h"
 #include "tools/cli.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 struct Options {
   std::string suite, shard = "1/1";
@@ -60,14 +59,11 @@ std::string time_stamp() {
   return text;
 }
 
-void write_rows(const fs::path& file, const std::vector<json>& rows) {
-  write_text(file, json(rows).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
-}
-
 // Whether something became worse.
-bool print_comparison(const Options& options, const std::vector<json>& before, const std::vector<json>& now) {
+bool print_comparison(const Options& options, const std::vector<Row>& before, const std::vector<Row>& now) {
   const Comparison comparison = compare_results(before, now, options.tolerance);
-  fmt::print("\nAgainst {}:\n{}", options.compare.string(), to_table(comparison));
+  print("\nAgainst {}:\n", options.compare.string());
+  print_lines(stdout, to_table(comparison));
   if (comparison.compared == 0) warn("no row of " + options.compare.string() + " is one of these");
   return comparison.regressed();
 }
@@ -77,16 +73,13 @@ BenchResult run_until_interrupted(const Suite& suite, const BenchOptions& bench,
   try {
     return run_suite(suite, bench, stages);
   } catch (const Interrupted&) {
-    fmt::print(stderr, "\ngnomon: finished rows are in {}; the same command with --out {} --resume goes on\n",
-               (bench.out / "results.jsonl").string(), bench.out.string());
+    print(stderr, "\ngnomon: finished rows are in {}; the same command with --out {} --resume goes on\n",
+          (bench.out / "results.jsonl").string(), bench.out.string());
     throw;
   }
 }
 
-int bench_command(const Options& options) {
-  const auto [shard, shards] = parse_shard(options.shard);
-  std::vector<json> old_rows;
-  if (!options.compare.empty()) old_rows = read_results(options.compare);
+Suite suite_of(const Options& options) {
   Suite suite = load_suite(find_suite(options.suite));
   if (!options.scenes.empty()) {
     suite.scenes.clear();
@@ -97,18 +90,13 @@ int bench_command(const Options& options) {
   if (options.repeat > 0) suite.repeat = options.repeat;
   suite.memory = options.device.memory;
   suite.images = suite.images || options.images;
-  for (const std::string& notice : suite.notices) fmt::print(stderr, "gnomon: note: {}\n", notice);
+  for (const std::string& notice : suite.notices) print(stderr, "gnomon: note: {}\n", notice);
+  return suite;
+}
 
-  BenchOptions bench;
-  bench.out = options.out.empty() ? fs::path("out") / (suite.name + "-" + time_stamp()) : options.out;
-  bench.resume = options.resume;
-  bench.overwrite = options.overwrite;
-  bench.shard = shard;
-  bench.shards = shards;
-  const auto device = open_device(options.device);
-  bench.device = device_info(*device);
-  fmt::print(stderr, "{}: {} scenes, {} sizes, {} techniques on {}\n", suite.name, suite.scenes.size(),
-             all_sizes(suite).size(), suite.configs.size(), bench.device.name);
+BenchResult measure(const Suite& suite, BenchOptions bench, const std::shared_ptr<Device>& device) {
+  print(stderr, "{}: {} scenes, {} sizes, {} techniques on {}\n", suite.name, suite.scenes.size(),
+        all_sizes(suite).size(), suite.configs.size(), bench.device.name);
   Progress progress("bench " + suite.name, 10);
   double share = 0;
   bench.progress = [&](double now, const std::string& note) { progress.update(share = now, note); };
@@ -116,18 +104,47 @@ int bench_command(const Options& options) {
   const BenchResult result =
       run_until_interrupted(suite, bench, device_stages(device, cache_folder(), tracing, bench.out));
   progress.done();
+  return result;
+}
 
-  const std::vector<json> rows = read_results(result.results);
-  fmt::print("\n{}", to_table(rows));
+// Prints the rows that are there, and what became of the rest; the exit status.
+int tell(const Options& options, const std::vector<Row>& old_rows, const BenchResult& result) {
+  const std::vector<Row> rows = read_results(result.results);
+  print_lines(stdout, "\n" + to_table(rows));
+  if (result.resumed > 0) print("{} rows were there already\n", result.resumed);
+  print("{}\n", result.results.string());
+  if (!result.stopped.empty()) {
+    print(stderr, "gnomon: {}\ngnomon: {} rows are kept in {}; --resume goes on there\n", result.stopped,
+          rows.size(), result.results.string());
+    return exit_failed;
+  }
   if (!options.json_file.empty()) write_rows(options.json_file, rows);
-  if (result.resumed > 0) fmt::print("{} rows were there already\n", result.resumed);
-  fmt::print("{}\n", result.results.string());
   if (result.failed > 0)
-    fmt::print(stderr, "gnomon: {} of {} rows failed; their status says why\n", result.failed,
-               result.measured);
-  const int validation = report_validation(*device);
+    print(stderr, "gnomon: {} of {} rows failed; their status says why\n", result.failed, result.measured);
   const bool regressed = !options.compare.empty() && print_comparison(options, old_rows, rows);
-  return result.failed > 0 || regressed ? exit_failed : validation;
+  return result.failed > 0 || regressed ? exit_failed : exit_done;
+}
+
+int bench_command(const Options& options) {
+  BenchOptions bench;
+  std::tie(bench.shard, bench.shards) = parse_shard(options.shard);
+  std::vector<Row> old_rows;
+  if (!options.compare.empty()) old_rows = read_results(options.compare);
+  const Suite suite = suite_of(options);
+  bench.out = options.out.empty() ? fs::path("out") / (suite.name + "-" + time_stamp()) : options.out;
+  bench.resume = options.resume;
+  bench.overwrite = options.overwrite;
+  const auto device = open_device(options.device);
+  bench.device = device_info(*device);
+  const BenchResult result = measure(suite, bench, device);
+  int status = exit_failed;
+  try {
+    status = tell(options, old_rows, result);
+  } catch (const Error& error) {  // of a further output: the rows are there all the same
+    print_problems(error.problems());
+    print(stderr, "gnomon: the rows are kept in {}\n", result.results.string());
+  }
+  return std::max<int>(status, report_validation(*device));
 }
 
 }  // namespace
@@ -177,7 +194,7 @@ void add_bench(CLI::App& app, int& status) {
   command->footer(
       R"(The techniques run in turn (A B C A B C ...), so that a slow spell of the machine hits all of them; 'ratio' is the
 median of the ratios to the baseline in the same round. A technique that fails gives a row with its reason, the suite
-goes on, and the exit status is 1. Suites name scenes through $GNOMON_SCENES, too (see docs/reading-the-report.md).
+goes on, and the exit status is 1; so it is when the disk is full: the rows so far are kept. Suites name scenes through $GNOMON_SCENES, too (see docs/reading-the-report.md).
 --compare also tells how many 95 % intervals of the ratios overlap with the earlier run's.
 
 Examples:

@@ -8,10 +8,12 @@
 #include "bench/run/suite.h"
 #include "engine/base/config.h"
 #include "engine/base/error.h"
+#include "engine/base/failure.h"
 #include "engine/graph/graph.h"
 #include "engine/light/scene_facts.h"
 #include "engine/plan/compile.h"
 #include "tools/cli.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -68,9 +70,9 @@ int check_command(const std::vector<std::string>& files) {
   int status = exit_done;
   for (const std::string& file : files) {
     try {
-      fmt::print("{}: ok ({})\n", file, check_file(file));
-    } catch (const Error& error) {
-      for (const Problem& problem : error.problems()) fmt::print(stderr, "gnomon: {}\n", to_string(problem));
+      print("{}: ok ({})\n", file, check_file(file));
+    } catch (...) {  // the files after it are checked whatever it was
+      print_problems(problems_of(std::current_exception(), file));
       status = exit_bad_input;
     }
   }
@@ -82,7 +84,7 @@ int check_command(const std::vector<std::string>& files) {
 void add_check(CLI::App& app, int& status) {
   auto files = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("check", "check graph, suite and scene files; needs no device");
-  command->add_option("FILE", *files, "what it is, is told by its content")->required();
+  command->add_option("FILE", *files, "what it is, its content says")->required();
   command->footer(
       R"(Prints 'FILE: ok (...)' or every problem with its place, a JSON pointer. Exit status 2 when any file has one.
 

@@ -1,16 +1,15 @@
 // gnomon edt: the distance transform of a mask.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/run/run_json.h"
+#include "bench/run/row.h"
 #include "bench/run/statistics.h"
 #include "engine/base/error.h"
 #include "tools/cli.h"
 #include "tools/edt.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -49,17 +48,17 @@ void add_error(json& row, const EdtRun& run, const EdtRun& exact, uint32_t width
   row["largest_error"] = std::isfinite(error.largest) ? json(error.largest) : json(nullptr);
 }
 
-void print(const json& row) {
-  fmt::print("{}: {}x{} pixels, {} sites\n", row["algorithm"].get<std::string>(), row["size"][0].get<int>(),
-             row["size"][1].get<int>(), row["sites"].get<uint64_t>());
+void print_row(const json& row) {
+  print("{}: {}x{} pixels, {} sites\n", row["algorithm"].get<std::string>(), row["size"][0].get<int>(),
+        row["size"][1].get<int>(), row["sites"].get<uint64_t>());
   const json& ms = row["gpu_ms"];
-  fmt::print("  {:.3f} ms (median of {}, MAD {:.3f})\n", ms["median"].get<double>(), ms["n"].get<int>(),
-             ms["mad"].get<double>());
+  print("  {:.3f} ms (median of {}, MAD {:.3f})\n", ms["median"].get<double>(), ms["n"].get<int>(),
+        ms["mad"].get<double>());
   for (const auto& [step, times] : row["steps"].items())
-    fmt::print("  {:<8} {:.3f} ms\n", step, times["gpu_ms"]["median"].get<double>());
+    print("  {:<8} {:.3f} ms\n", step, times["gpu_ms"]["median"].get<double>());
   if (row.contains("wrong_pixels"))
-    fmt::print("  {} wrong pixels, largest error {} pixels\n", row["wrong_pixels"].get<uint64_t>(),
-               row["largest_error"].dump());
+    print("  {} wrong pixels, largest error {} pixels\n", row["wrong_pixels"].get<uint64_t>(),
+          row["largest_error"].dump());
 }
 
 int edt_command(const Options& options) {
@@ -75,7 +74,7 @@ int edt_command(const Options& options) {
   }
   write_exr(options.out, edt_distance(run.nearest, mask->width, mask->height));
   if (!options.json_file.empty()) write_text(options.json_file, row.dump(2) + "\n");
-  print(row);
+  print_row(row);
   return report_validation(*device);
 }
 

@@ -12,7 +12,9 @@
 #include "engine/base/error.h"
 #include "engine/light/scene_facts.h"
 #include "engine/plan/compile.h"
+#include "engine/scene/wide_spot.h"
 #include "tools/cli.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -32,18 +34,16 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
   Declaration::Setting setting;
   setting.viewport = size;
   setting.lights = static_cast<uint32_t>(scene.lights.size());
-  setting.map_faces = 0;
-  for (const Light& light : scene.lights) setting.map_faces += light.type == LightType::point ? 6 : 1;
-  return compile(
-      graph, setting,
-      scene_facts(scene, camera, camera.aspect.value_or(double(size.width) / size.height), size.height));
+  for (const Light& light : scene.lights) setting.light_types.push_back(view_type(light));
+  setting.scene = scene_sizes(scene);
+  return compile(graph, setting, scene_facts(scene, camera, double(size.width) / size.height, size.height));
 }
 
 // A frame as it is, and one with everything kept.
 struct Measured {
   std::string device;
   double lean_ms = 0, full_ms = 0;                     // of a frame
-  std::map<std::string, double> lean_pass, full_pass;  // GPU ms of each pass, all of its turns and parts
+  std::map<std::string, double> lean_pass, full_pass;  // GPU ms of each pass, all of its iterations and parts
   MemoryUse lean_memory, full_memory;
 };
 
@@ -98,11 +98,11 @@ void print_pass(const std::string& id, const std::string& type, const std::strin
   if (measured != nullptr)
     line += fmt::format(" {:>10} {:>10}", ms_or_nothing(measured->lean_pass, id),
                         ms_or_nothing(measured->full_pass, id));
-  fmt::print("{}{}{}\n", line, why.empty() ? "" : "  ", why);
+  print("{}{}{}\n", line, why.empty() ? "" : "  ", why);
 }
 
 void print_passes(const Plan& plan, const std::vector<LeftOutPass>& left_out, const Measured* measured) {
-  if (measured != nullptr) fmt::print("  {:<43} {:>10} {:>10}\n", "", "ms", "keeping all");
+  if (measured != nullptr) print("  {:<43} {:>10} {:>10}\n", "", "ms", "keeping all");
   for (const PlanNode& node : plan.nodes) {
     std::string folded;
     for (const auto& [port, constant] : node.constant_inputs)
@@ -110,19 +110,19 @@ void print_passes(const Plan& plan, const std::vector<LeftOutPass>& left_out, co
     print_pass(node.id, node.type, "kept", folded, measured);
     for (const LeftOutPass& part : left_out)
       if (part.pass == node.id && !part.part.empty())
-        fmt::print("            without {}: {}\n", part.part, part.reason);
+        print("            without {}: {}\n", part.part, part.reason);
   }
   for (const LeftOut& pass : plan.left_out) print_pass(pass.id, pass.type, "left out", pass.reason, measured);
 }
 
 void print_saved(const Measured& m) {
   constexpr double kMebibyte = 1024.0 * 1024.0;
-  fmt::print("\na frame on {}: {:.3f} ms, keeping all {:.3f} ms: {:.3f} ms saved\n", m.device, m.lean_ms,
-             m.full_ms, m.full_ms - m.lean_ms);
+  print("\na frame on {}: {:.3f} ms, keeping all {:.3f} ms: {:.3f} ms saved\n", m.device, m.lean_ms,
+        m.full_ms, m.full_ms - m.lean_ms);
   const double lean = double(m.lean_memory.transient_bytes) / kMebibyte;
   const double full = double(m.full_memory.transient_bytes) / kMebibyte;
-  fmt::print("memory of its images and buffers: {:.2f} MiB, keeping all {:.2f} MiB: {:.2f} MiB saved\n", lean,
-             full, full - lean);
+  print("memory of its images and buffers: {:.2f} MiB, keeping all {:.2f} MiB: {:.2f} MiB saved\n", lean,
+        full, full - lean);
 }
 
 void explain_command(const Options& options) {
@@ -131,16 +131,16 @@ void explain_command(const Options& options) {
   const Graph graph = load_graph(find_graph(options.graph), set);
   const auto scene = open_scene(options.scene, options.light_scale);
   const Plan plan = plan_of(*scene, graph, options);
-  fmt::print("{} on {}, {}\n", graph.name, scene->name, options.size);
+  print("{} on {}, {}\n", graph.name, scene->name, options.size);
   std::vector<LeftOutPass> left_out;
   std::optional<Measured> measured;
   if (options.repeat > 0) measured = measure(scene, graph, options, left_out);
   print_passes(plan, left_out, measured ? &*measured : nullptr);
-  if (options.plan) fmt::print("\n{}", to_text(plan));
+  if (options.plan) print_lines(stdout, "\n" + to_text(plan));
   if (measured)
     print_saved(*measured);
   else if (plan.left_out.empty())
-    fmt::print("no pass is left out\n");
+    print("no pass is left out\n");
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ void add_explain(CLI::App& app, int& status) {
   command
       ->add_option(
           "--repeat", options->repeat,
-          "frames measured, in turn with a run that keeps all; 0: none, and only whole passes are told")
+          "frames measured, in turn with a run that keeps all; 0: none, and only whole passes are reported")
       ->type_name("N")
       ->capture_default_str();
   add_light_scale(*command, options->light_scale);

@@ -13,6 +13,7 @@
 #include "engine/graph/pass.h"
 #include "engine/truth/metrics.h"
 #include "tools/cli.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -47,29 +48,48 @@ std::string range_of(const ParamSpec& spec) {
   return "?";
 }
 
+std::string joined(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// What outputs say of themselves, and what is taken from inputs' sources.
+void list_traits(const Declaration& declaration) {
+  for (const Port& port : declaration.ports()) {
+    std::vector<std::string> said, taken;
+    if (port.direction != Direction::in)
+      for (const auto& [key, value] : port.traits) said.push_back(key);
+    for (const ParamSpec& spec : declaration.param_specs())
+      if (spec.from == port.name) taken.push_back(spec.name);
+    if (!said.empty()) print("  trait {:<18}says {}\n", port.name, joined(said));
+    if (!taken.empty()) print("  trait {:<18}is asked for {}\n", port.name, joined(taken));
+  }
+}
+
 void list_passes() {
   for (const std::string& type : PassRegistry::instance().types()) {
     Declaration declaration;
     PassRegistry::instance().make(type)->declare(declaration);
-    fmt::print("{}  {}\n", type, declaration.summary());
-    if (!declaration.cite().empty()) fmt::print("  source: {}\n", declaration.cite());
+    print("{}  {}\n", type, declaration.summary());
+    if (!declaration.cite().empty()) print("  source: {}\n", declaration.cite());
     for (const Port& port : declaration.ports()) {
       if (port.direction == Direction::transient) continue;
-      fmt::print("  {:<6}{:<18}{}{}\n", direction_name(port.direction), port.name,
-                 port.optional ? "(optional) " : "", port.help);
+      print("  {:<6}{:<18}{}{}\n", direction_name(port.direction), port.name,
+            port.optional ? "(optional) " : "", port.help);
     }
     for (const ParamSpec& spec : declaration.param_specs())
-      fmt::print("  param {:<18}{} [default {}; {}]\n", spec.name, spec.help, to_string(spec.standard),
-                 range_of(spec));
-    fmt::print("\n");
+      if (spec.from.empty())
+        print("  param {:<18}{} [default {}; {}]\n", spec.name, spec.help, to_string(spec.default_value),
+              range_of(spec));
+    list_traits(declaration);
+    print("\n");
   }
 }
 
 void list_graphs() {
   for (const fs::path& file : all_graphs()) {
     const Graph graph = load_graph(file);
-    fmt::print("{:<24}{}\n", graph.name, graph.cite);
-    for (const auto& [name, value] : graph.vars) fmt::print("  --set {}={}\n", name, to_string(value));
+    print("{:<24}{}\n", graph.name, graph.cite);
+    for (const auto& [name, value] : graph.vars) print("  --set {}={}\n", name, to_string(value));
   }
 }
 
@@ -81,8 +101,8 @@ void list_scenes_in(const fs::path& folder) {
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files)
-    fmt::print("{:<24}{:>8} kB  {}\n", file.stem().string(), fs::file_size(file) / 1000,
-               file.lexically_normal().string());
+    print("{:<24}{:>8} kB  {}\n", file.stem().string(), fs::file_size(file) / 1000,
+          file.lexically_normal().string());
 }
 
 void list_scenes() {
@@ -92,8 +112,8 @@ void list_scenes() {
 
 void list_metrics() {
   for (const MetricInfo& info : metric_infos()) {
-    fmt::print("{:<20}[{}] {}\n", info.name, info.unit, info.definition);
-    if (!info.source.empty()) fmt::print("{:<20}source: {}\n", "", info.source);
+    print("{:<20}[{}] {}\n", info.name, info.unit, info.definition);
+    if (!info.source.empty()) print("{:<20}source: {}\n", "", info.source);
   }
 }
 
@@ -103,7 +123,7 @@ void list_devices_found() {
     fail("no Vulkan device", {}, {},
          "install a Vulkan driver; mesa-vulkan-drivers holds lavapipe, which needs no GPU");
   for (const DeviceInfo& device : devices)
-    fmt::print("{}  ({}{})\n", device.name, device.driver, device.is_cpu ? ", software" : "");
+    print("{}  ({}{})\n", device.name, device.driver, device.is_cpu ? ", software" : "");
 }
 
 struct Topic {
@@ -117,7 +137,7 @@ constexpr Topic topics[] = {
     {"scenes", "scenes in assets/scenes and $GNOMON_SCENES", list_scenes},
     {"metrics", "error metrics: definition, unit, source", list_metrics},
     {"devices", "Vulkan devices, for --device", list_devices_found},
-    {"schema", "the JSON Schema of graph files", [] { fmt::print("{}\n", graph_schema().dump(2)); }},
+    {"schema", "the JSON Schema of graph files", [] { print_lines(stdout, graph_schema().dump(2) + "\n"); }},
 };
 
 }  // namespace

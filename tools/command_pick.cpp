@@ -18,6 +18,7 @@
 #include "engine/image/image.h"
 #include "engine/vulkan/shader.h"
 #include "tools/cli.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -101,48 +102,47 @@ Suite suite_of(const Options& options) {
   return suite;
 }
 
-std::vector<json> measure(const Options& options, const Suite& suite, const fs::path& folder) {
+std::vector<Row> measure(const Options& options, const Suite& suite, const fs::path& folder) {
   BenchOptions bench;
   bench.out = folder;
   const auto device = open_device(options.device);
   bench.device = device_info(*device);
-  fmt::print(stderr, "{} settings on {}\n", suite.configs.size(), bench.device.name);
+  print(stderr, "{} settings on {}\n", suite.configs.size(), bench.device.name);
   Progress progress("pick", 10);
   double share = 0;
   bench.progress = [&](double now, const std::string& note) { progress.update(share = now, note); };
   const auto tracing = [&](double, const std::string& note) { progress.update(share, note); };
   const BenchResult result = run_suite(suite, bench, device_stages(device, cache_folder(), tracing));
   progress.done();
+  if (!result.stopped.empty()) fail(result.stopped);
   return read_results(result.results);
 }
 
-std::string line_of(const json& row, const std::string& metric) {
-  return fmt::format("{:>10.4g} ms {:>12.5g} {}  {}", figure_at(row, "/frame_ms/median").value_or(0),
-                     error_of(row, metric).value_or(ErrorFigure{}).value, metric, row_label(row));
+std::string line_of(const Row& row, const std::string& metric) {
+  return fmt::format("{:>10.4g} ms {:>12.5g} {}  {}", frame_ms_of(row).value_or(0),
+                     error_of(row, metric).value_or(ErrorFigure{}).value, metric, label_of(row));
 }
 
 // The choices that are not beaten in both figures, quickest first.
-void print_front(const std::vector<json>& rows, const std::string& metric) {
+void print_front(const std::vector<Row>& rows, const std::string& metric) {
   std::vector<TimeAndError> candidates;
-  std::vector<const json*> of;
-  for (const json& row : rows) {
-    const auto ms = figure_at(row, "/frame_ms/median");
+  std::vector<const Row*> of;
+  for (const Row& row : rows) {
+    const auto ms = frame_ms_of(row);
     const auto error = error_of(row, metric);
-    if (!is_ok(row) || !ms || !error) continue;
+    if (!row.ok() || !ms || !error) continue;
     candidates.push_back({*ms, error->value});
     of.push_back(&row);
   }
-  fmt::print("Worth considering (no other is quicker and more exact):\n");
-  for (const size_t i : pareto_front(candidates)) fmt::print("{}\n", line_of(*of[i], metric));
+  print("Worth considering (no other is quicker and more exact):\n");
+  for (const size_t i : pareto_front(candidates)) print("{}\n", line_of(*of[i], metric));
 }
 
 // The configuration that `row` measured.
-const SuiteConfig& config_of(const Suite& suite, const json& row) {
+const SuiteConfig& config_of(const Suite& suite, const Row& row) {
   for (const SuiteConfig& config : suite.configs)
-    if (config.graph.name == row.value("graph", "") &&
-        to_json(config.graph.vars) == row.value("vars", json::object()))
-      return config;
-  fail("the row of '" + row_label(row) + "' is none of the suite");
+    if (config.graph.name == row.graph && config.graph.vars == row.vars) return config;
+  fail("the row of '" + label_of(row) + "' is none of the suite");
 }
 
 int pick_command(const Options& options) {
@@ -154,16 +154,14 @@ int pick_command(const Options& options) {
          did_you_mean(options.metric, metrics));
   const Suite suite = suite_of(options);
   const RowFolder folder(options.results);
-  std::vector<json> rows = measure(options, suite, folder.path());
+  std::vector<Row> rows = measure(options, suite, folder.path());
   if (!options.graphs.empty())  // the baseline was there for the ratios only
-    std::erase_if(rows, [&](const json& row) {
-      return std::find(options.graphs.begin(), options.graphs.end(), row.value("graph", "")) ==
-             options.graphs.end();
+    std::erase_if(rows, [&](const Row& row) {
+      return std::find(options.graphs.begin(), options.graphs.end(), row.graph) == options.graphs.end();
     });
-  if (!options.json_file.empty())
-    write_text(options.json_file, json(rows).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
-  for (const json& row : rows)
-    if (!is_ok(row)) warn(fmt::format("{}: {}", row_label(row), row.value("status", "?")));
+  if (!options.json_file.empty()) write_rows(options.json_file, rows);
+  for (const Row& row : rows)
+    if (!row.ok()) warn(fmt::format("{}: {}", label_of(row), row.status));
   print_front(rows, options.metric);
   PickRule rule;
   if (options.bound_ms) rule.max_ms = options.max_ms;
@@ -171,13 +169,13 @@ int pick_command(const Options& options) {
   rule.metric = options.metric;
   const auto best = pick_row(rows, rule);
   if (!best) {
-    fmt::print(stderr, "gnomon: no setting keeps the bound\n");
+    print(stderr, "gnomon: no setting keeps the bound\n");
     return exit_failed;
   }
   const SuiteConfig& winner = config_of(suite, rows[*best]);
   const fs::path file = options.out.empty() ? fs::path(winner.graph.name + "-picked.json") : options.out;
-  write_text(file, to_json(winner.graph).dump(2) + "\n");
-  fmt::print("Winner:\n{}\n{}\n", line_of(rows[*best], options.metric), file.string());
+  write_text(file, to_json(winner.graph).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  print("Winner:\n{}\n{}\n", line_of(rows[*best], options.metric), file.string());
   return exit_done;
 }
 

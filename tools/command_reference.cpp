@@ -9,8 +9,10 @@
 #include "engine/base/error.h"
 #include "engine/image/image.h"
 #include "engine/scene/animation.h"
+#include "engine/scene/camera.h"
 #include "engine/truth/reference.h"
 #include "tools/cli.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -38,16 +40,18 @@ void reference_command(const Options& options) {
   if (!std::isfinite(options.time)) fail("the time is not a finite number", {}, "--time");
   auto scene = open_scene(options.scene, options.light_scale);
   if (scene->animation) scene = std::make_shared<const Scene>(posed(*scene, options.time));
-  camera_of(*scene, options.camera);
+  const Camera& camera = camera_of(*scene, options.camera);
+  if (const std::string told = aspect_warning(camera, double(size.width) / size.height); !told.empty())
+    warn(told);
   Progress progress("reference " + scene->name, 5);
   settings.progress = [&](double share) { progress.update(share); };
   const Reference reference = ReferenceTracer(*scene).trace(settings);
   progress.done();
   if (options.out.has_parent_path()) std::filesystem::create_directories(options.out.parent_path());
   write_exr(options.out, to_image(reference));
-  fmt::print("{}: {}x{}, {} light{}, {} sample{} each, noise floor {:.2g}\n", options.out.string(),
-             reference.width, reference.height, reference.lights, reference.lights == 1 ? "" : "s",
-             reference.samples, reference.samples == 1 ? "" : "s", reference.noise_floor);
+  print("{}: {}x{}, {} light{}, {} sample{} each, noise floor {:.2g}\n", options.out.string(),
+        reference.width, reference.height, reference.lights, reference.lights == 1 ? "" : "s",
+        reference.samples, reference.samples == 1 ? "" : "s", reference.noise_floor);
 }
 
 }  // namespace
@@ -78,8 +82,8 @@ void add_reference(CLI::App& app, int& status) {
   add_light_scale(*command, options->light_scale);
   command->footer(
       R"(Channels: Y, light1.Y, ... visibility (0 umbra, 1 lit); domain, light1.domain, ... 0 where the
-error is counted, 1 no geometry, 2 faces away, 3 outside the light; Z depth along the view axis, P position
-relative to the eye, N geometric normal (world units).
+error is counted, 1 no geometry, 2 faces away, 3 outside the light, 4 edge-on to the light; Z depth along the
+view axis, P position relative to the eye, N geometric normal (world units).
 
 Example:
   gnomon reference fence --size 640x360 --out fence.exr)");

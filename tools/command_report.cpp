@@ -11,6 +11,7 @@
 #include "tools/cli.h"
 #include "tools/output_folder.h"
 #include "tools/report_page.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -42,7 +43,7 @@ int report_command(const Options& options) {
   write_text(output.file("report.json"), data);
   output.keep();
   for (const char* name : {"report.html", "report.csv", "report.json"})
-    fmt::print("{}\n", (folder / name).lexically_normal().string());
+    print("{}\n", (folder / name).lexically_normal().string());
   if (report["images_left_out"] > 0)
     warn(fmt::format("{} images are over --image-budget and left out of the page",
                      report["images_left_out"].dump()));

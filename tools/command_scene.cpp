@@ -8,10 +8,14 @@
 #include "engine/base/error.h"
 #include "engine/base/resource_root.h"
 #include "engine/graph/graph.h"
+#include "engine/image/image.h"
+#include "engine/scene/animation.h"
 #include "engine/scene/scene.h"
 #include "tools/cli.h"
+#include "tools/scene_export.h"
 #include "tools/scene_generate.h"
 #include "tools/scene_info.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
@@ -21,6 +25,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string name, file;
   fs::path out;
+  double time = 0;  // seconds
 };
 
 void check_name(const std::string& name) {
@@ -41,9 +46,19 @@ void generate_command(const Options& options) {
     if (options.name != "all" && options.name != generator.name) continue;
     generate_scene(generator.name, out);
     const fs::path file = out / (generator.name + ".glb");
-    fmt::print("{:<16}{:>7} kB  {}\n", generator.name, fs::file_size(file) / 1000,
-               file.lexically_normal().string());
+    print("{:<16}{:>7} kB  {}\n", generator.name, fs::file_size(file) / 1000,
+          file.lexically_normal().string());
   }
+}
+
+void export_command(const Options& options) {
+  if (options.out.extension() != ".glb")
+    fail("the file's name must end in .glb", options.out.string(), "--out");
+  const std::shared_ptr<const Scene> scene = open_scene(options.file, 1);
+  if (options.out.has_parent_path()) fs::create_directories(options.out.parent_path());
+  write_text(options.out, to_glb(posed(*scene, options.time)));
+  print("{}: {} meshes, {} instances, {} triangles\n", options.out.string(), scene->meshes.size(),
+        scene->instances.size(), scene->triangles());
 }
 
 std::string generator_list() {
@@ -58,7 +73,7 @@ std::string generator_list() {
 void add_scene(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("scene", "generate the small scenes, or say what a scene file holds");
+      app.add_subcommand("scene", "generate the small scenes, or say or write what a scene file holds");
   command->require_subcommand(1);
   CLI::App* generate = command->add_subcommand("generate", "write a small scene; the same bytes every time");
   generate->add_option("NAME", options->name, "a scene of the list below, or all")->required();
@@ -72,8 +87,22 @@ void add_scene(CLI::App& app, int& status) {
       command->add_subcommand("info", "meshes, materials, lights, cameras, bounds and flaws of a scene");
   info->add_option("FILE", options->file, "a .glb or .gltf file, or the name of a scene in assets/scenes")
       ->required();
+  CLI::App* exporting = command->add_subcommand(
+      "export", "write a scene as Gnomon has read it: instances, masks, cameras and lights");
+  exporting
+      ->add_option("FILE", options->file, "a .glb or .gltf file, or the name of a scene in assets/scenes")
+      ->required();
+  exporting->add_option("--out,-o", options->out, "the file to write")->required()->type_name("FILE.glb");
+  exporting->add_option("--time", options->time, "seconds of the scene's animations, whose pose is written")
+      ->type_name("S")
+      ->capture_default_str();
+  exporting->footer("Example:\n  gnomon scene export robot --time 0.5 --out robot-at-half.glb");
+  exporting->callback([options, &status] {
+    export_command(*options);
+    status = exit_done;
+  });
   info->callback([options, &status] {
-    fmt::print("{}", describe_scene(load_scene(find_scene(options->file))));
+    print_lines(stdout, describe_scene(load_scene(find_scene(options->file))));
     status = exit_done;
   });
 }

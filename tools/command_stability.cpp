@@ -8,25 +8,24 @@
 #include <optional>
 
 #include "bench/run/progress.h"
-#include "bench/run/results.h"
 #include "bench/stability/stability.h"
-#include "bench/stability/stability_process.h"
+#include "bench/stability/stability_cases.h"
 #include "engine/base/error.h"
 #include "engine/image/image.h"
 #include "tools/cli.h"
 #include "tools/output_folder.h"
+#include "tools/terminal.h"
 
 namespace gnomon {
 namespace {
 
 namespace fs = std::filesystem;
-using Ran = StabilityMeasurement::Ran;
 
 struct Options {
   std::vector<std::string> graphs, axes, skipped;
   std::optional<std::string> test;
   fs::path out, json_file;
-  double timeout = 1800;  // seconds a case: three frames of the longest that a device may take
+  double timeout = StabilityPlace().timeout;  // seconds a case
   bool quick = false, resume = false, overwrite = false;
   DeviceFlags device;
 };
@@ -47,114 +46,16 @@ std::vector<fs::path> graphs_of(const Options& options) {
   return files;
 }
 
-// How cases are run: here, one after the other, or each in a process of its own.
-class Cases {
- public:
-  virtual ~Cases() = default;
-  virtual bool follows_light(const fs::path& graph) = 0;
-  virtual StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool area) = 0;
-};
-
-class CasesHere : public Cases {
- public:
-  explicit CasesHere(const Options& options)
-      : options_(stability_options(options)),
-        device_(open_device(options.device)),
-        references_(make_stability_references()) {}
-  bool follows_light(const fs::path& graph) override { return follows_light_size(device_, graph, options_); }
-  StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool area) override {
-    return measure_stability(device_, graph, test, area, options_, *references_);
-  }
-
- private:
-  StabilityOptions options_;
-  std::shared_ptr<Device> device_;
-  std::shared_ptr<StabilityReferences> references_;
-};
-
-class CasesApart : public Cases {
- public:
-  explicit CasesApart(const Options& options) : options_(options) {}
-  bool follows_light(const fs::path& graph) override {
-    const auto outcome =
-        apart([&] { return std::string(CasesHere(options_).follows_light(graph) ? "yes" : "no"); });
-    return outcome.ended == ChildOutcome::Ended::done && outcome.text == "yes";
-  }
-  StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool area) override {
-    const auto outcome = apart([&] {
-      return to_json(CasesHere(options_).run(graph, test, area))
-          .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-    });
-    StabilityMeasurement m;
-    if (outcome.ended == ChildOutcome::Ended::done)
-      return measurement_from(nlohmann::json::parse(outcome.text));
-    m.ran = outcome.ended == ChildOutcome::Ended::crashed ? Ran::crashed : Ran::timed_out;
-    m.message = outcome.text;
-    return m;
-  }
-
- private:
-  ChildOutcome apart(const std::function<std::string()>& work) const {
-    return run_in_child(work, options_.timeout, child_memory());
-  }
-  const Options& options_;
-};
-
-// What other cases answer, each on disk as soon as it is known, and not asked again by a walk that goes on.
-class CasesKept : public Cases {
- public:
-  CasesKept(std::unique_ptr<Cases> cases, const Options& options)
-      : cases_(std::move(cases)), quick_(options.quick), file_(prepared(options), options.resume) {
-    for (nlohmann::json& row : read_results(file_.path()))
-      known_.insert_or_assign(row.at("key").get<std::string>(), std::move(row));
-  }
-  bool follows_light(const fs::path& graph) override {
-    const nlohmann::json row = asked(graph, "follows the light's size", [&](nlohmann::json& answer) {
-      answer["follows"] = cases_->follows_light(graph);
-    });
-    return row.at("follows").get<bool>();
-  }
-  StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool area) override {
-    const std::string name = to_string(test) + (area ? " against the area light" : "");
-    const nlohmann::json row = asked(graph, name, [&](nlohmann::json& answer) {
-      answer["measured"] = to_json(cases_->run(graph, test, area));
-    });
-    return measurement_from(row.at("measured"));
-  }
-
- private:
-  static fs::path prepared(const Options& options) {
-    fs::path file = options.out / "cases.jsonl";
-    std::error_code ignored;
-    if (options.overwrite) fs::remove(file, ignored);
-    return file;
-  }
-  nlohmann::json asked(const fs::path& graph, const std::string& what,
-                       const std::function<void(nlohmann::json&)>& ask) {
-    const std::string key = fmt::format("{}{}: {}", graph.string(), quick_ ? " (quick)" : "", what);
-    if (const auto found = known_.find(key); found != known_.end()) return found->second;
-    nlohmann::json row = {{"key", key}};
-    ask(row);
-    file_.append(row);
-    return row;
-  }
-
-  std::unique_ptr<Cases> cases_;
-  bool quick_;
-  ResultsFile file_;
-  std::map<std::string, nlohmann::json> known_;
-};
-
 void print_row(const StabilityRow& row, const StabilityOptions& options) {
   std::map<StabilityVerdict, size_t> count;
   for (const StabilityFinding& f : row.findings) ++count[f.verdict];
   using enum StabilityVerdict;
-  fmt::print("{:<24}{} cases: {} hold, {} warned of, {} refused, {} degrade, {} fail\n", row.name,
-             row.findings.size(), count[holds], count[warned], count[refuses], count[degrades], count[fails]);
-  for (const auto& [axis, sentence] : stated_domain(row)) fmt::print("  {:<18}{}\n", axis, sentence);
+  print("{:<24}{} cases: {} hold, {} warned of, {} refused, {} degrade, {} fail\n", row.name,
+        row.findings.size(), count[holds], count[warned], count[refuses], count[degrades], count[fails]);
+  for (const auto& [axis, sentence] : stated_domain(row)) print("  {:<18}{}\n", axis, sentence);
   for (const StabilityFinding& f : row.findings)
     if (f.verdict == StabilityVerdict::fails) {
-      fmt::print("  first failure: {}\n    {}\n", f.reason, reproduce(row, f.test, options));
+      print("  first failure: {}\n    {}\n", f.reason, reproduce(row, f.test, options));
       break;
     }
   std::fflush(stdout);
@@ -178,7 +79,7 @@ int report(const std::vector<StabilityRow>& rows, const Options& options) {
   return std::any_of(rows.begin(), rows.end(), any_broken) ? exit_failed : exit_done;
 }
 
-int walk(const Options& options, Cases& cases) {
+int walk(const Options& options, StabilityCases& cases) {
   const std::vector<fs::path> graphs = graphs_of(options);
   const auto run = [&](const fs::path& graph, const StabilityCase& test, bool area) {
     return cases.run(graph, test, area);
@@ -198,12 +99,13 @@ int walk(const Options& options, Cases& cases) {
 }
 
 void print_case(const StabilityFinding& finding, const StabilityRow& row) {
-  fmt::print("{}, {}: {}{}{}\n", row.name, to_string(finding.test), to_string(finding.verdict),
-             finding.reason.empty() ? "" : ": ", finding.reason);
-  fmt::print("{}\n", to_json(finding.measured).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  print("{}, {}: {}{}{}\n", row.name, to_string(finding.test), to_string(finding.verdict),
+        finding.reason.empty() ? "" : ": ", finding.reason);
+  print_lines(stdout,
+              to_json(finding.measured).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
-int one_case(const Options& options, Cases& cases) {
+int one_case(const Options& options, StabilityCases& cases) {
   const StabilityCase test = parse_stability_case(*options.test);
   std::vector<StabilityRow> rows;
   for (const fs::path& graph : graphs_of(options)) {
@@ -235,12 +137,14 @@ void check_axes(const std::vector<std::string>& wanted) {
 
 int stability_command(const Options& options) {
   check_axes(options.axes);
-  std::unique_ptr<Cases> cases;
-  if (options.quick)
-    cases = std::make_unique<CasesHere>(options);
-  else
-    cases = std::make_unique<CasesApart>(options);
-  if (!options.out.empty()) cases = std::make_unique<CasesKept>(std::move(cases), options);
+  StabilityPlace place;
+  place.device = {options.device.part, options.device.validation};
+  place.apart = !options.quick;
+  place.timeout = options.timeout;
+  place.out = options.out;
+  place.resume = options.resume;
+  place.overwrite = options.overwrite;
+  const auto cases = stability_cases(stability_options(options), place);
   return options.test ? one_case(options, *cases) : walk(options, *cases);
 }
 

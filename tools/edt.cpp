@@ -1,3 +1,4 @@
+// Distance transforms of masks, apart from any scene.
 #include "tools/edt.h"
 
 #include <fmt/format.h>
@@ -10,30 +11,9 @@
 #include "engine/base/error.h"
 #include "engine/graph/graph.h"
 #include "engine/render/renderer.h"
-#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {
-
-// The engine renders scenes: one triangle, which no pass of this graph looks at.
-Scene least_scene() {
-  Scene scene;
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  mesh.normals.assign(3, {0, 0, 1});
-  mesh.uvs.assign(3, {0, 0});
-  mesh.indices = {0, 1, 2};
-  for (const glm::vec3& p : mesh.positions) {
-    mesh.bounds.add(p);
-    scene.bounds.add(p);
-  }
-  scene.meshes.push_back(std::move(mesh));
-  scene.materials.emplace_back();
-  scene.instances.emplace_back();
-  scene.cameras.emplace_back();
-  scene.lights.emplace_back();
-  return scene;
-}
 
 Graph edt_graph(const EdtSettings& settings) {
   const nlohmann::json graph = {
@@ -50,7 +30,7 @@ Graph edt_graph(const EdtSettings& settings) {
            {"sites", settings.sites},
            {"radius", settings.radius}}}}}},
       {"outputs", {{"nearest", "transform.nearest"}}}};
-  return parse_graph(graph.dump(), "edt");
+  return parse_graph(graph.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), "edt");
 }
 
 // The pass "transform" and its parts, "transform.STEP".
@@ -72,7 +52,7 @@ EdtRun run_edt(const std::shared_ptr<Device>& device, const std::shared_ptr<cons
   RenderSettings render;
   render.width = mask->width, render.height = mask->height;
   render.images["mask"] = mask;
-  Renderer renderer(device, std::make_shared<const Scene>(least_scene()), edt_graph(settings), render);
+  Renderer renderer(device, nullptr, edt_graph(settings), render);
   EdtRun run;
   for (uint32_t i = 0; i < settings.warmup; ++i) renderer.render(TimingMode::isolated);
   for (uint32_t i = 0; i < settings.repeat; ++i) add_times(run, renderer.render(TimingMode::isolated));

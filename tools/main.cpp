@@ -1,4 +1,4 @@
-// The program.
+// The program `gnomon`.
 #include <csignal>
 
 #include "engine/base/interrupt.h"

@@ -1,3 +1,4 @@
+// Makes a report of one HTML file that needs nothing else.
 #include "tools/report_page.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Writes the generated scenes as .glb files.
 #include "tools/scene_generate.h"
 
 #include <system_error>
@@ -40,6 +41,8 @@ constexpr Entry entries[] = {
      generate::sphere_plane_scene},
     {"square_plane", "A square blocker above a plane, with a closed-form umbra and penumbra.",
      generate::square_plane_scene},
+    {"sun_and_lamp", "A square high above a plane and a post on it, under a sun of 0.53 degrees and a lamp.",
+     generate::sun_and_lamp_scene},
 };
 
 }  // namespace

@@ -62,4 +62,16 @@ constexpr int window_panes = 2;  // a side
 constexpr double ground_half = 5.5;
 }  // namespace area_shapes
 
+// The sun's angular diameter a is 0.53 degrees, so that its penumbrae are 2 tan(a / 2) = 0.00925 of the way
+// from the caster wide. The lamp is a sphere.
+namespace sun_and_lamp {
+constexpr double blocker_half = 1.0;
+constexpr double blocker_height = 6.0;
+constexpr double sun_direction[3] = {0.5, -2.0, 0.3};  // the way it shines
+constexpr double sun_degrees = 0.53;
+constexpr double lamp[3] = {-2.5, 3.0, 1.5};
+constexpr double lamp_radius = 0.2;
+constexpr double ground_half = 5.5;
+}  // namespace sun_and_lamp
+
 }  // namespace gnomon

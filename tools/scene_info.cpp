@@ -1,3 +1,4 @@
+// What `gnomon scene info` prints.
 #include "tools/scene_info.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <numbers>
 
 #include "engine/scene/animation.h"
+#include "engine/scene/area_light.h"
 
 namespace gnomon {
 namespace {
@@ -85,7 +87,13 @@ void describe_lights(const Scene& scene, Out out) {
     if (light.type == LightType::spot)
       fmt::format_to(out, ", cone {:.4g} to {:.4g} degrees, map {:.4g} degrees", degrees(light.inner_cone),
                      degrees(light.outer_cone), degrees(light.map_fov));
-    if (light.area) fmt::format_to(out, ", area: {}", text(*light.area, scene));
+    if (has_size(light)) {
+      const std::string size =
+          light.type == LightType::directional
+              ? fmt::format("angular diameter {:.6g} degrees", degrees(angular_diameter(*light.area)))
+              : "area: " + text(*light.area, scene);
+      fmt::format_to(out, ", {}", size);
+    }
     fmt::format_to(out, "\n");
   }
 }
@@ -96,6 +104,7 @@ void describe_cameras(const Scene& scene, Out out) {
     fmt::format_to(out, "  {}: at {}, towards {}, {:.4g} degrees, near {:.4g}", camera.name,
                    text(position(camera.world_from_camera)), text(forward(camera.world_from_camera)),
                    degrees(camera.fov_y), camera.near);
+    if (camera.far) fmt::format_to(out, ", far {:.3g}", *camera.far);
     if (camera.aspect) fmt::format_to(out, ", aspect {:.4g}", *camera.aspect);
     fmt::format_to(out, "\n");
   }
@@ -104,8 +113,13 @@ void describe_cameras(const Scene& scene, Out out) {
 void describe_animation(const Scene& scene, Out out) {
   if (!scene.animation) return;
   const Animation& moving = *scene.animation;
-  fmt::format_to(out, "animation: {:.4g} s, moves {} instances, {} cameras, {} lights\n", duration(moving),
+  fmt::format_to(out, "animation: {:.4g} s, moves {} instances, {} cameras, {} lights", duration(moving),
                  moving.instances.size(), moving.cameras.size(), moving.lights.size());
+  if (const size_t count = moving.deformations.size()) fmt::format_to(out, "; the shape of {} meshes", count);
+  if (const size_t count = moving.changing_lights.size())
+    fmt::format_to(out, "; the intensity of {} lights", count);
+  if (const size_t count = moving.changing_materials.size()) fmt::format_to(out, "; {} materials", count);
+  fmt::format_to(out, "\n");
 }
 
 void describe_warnings(const SceneWarnings& warnings, Out out) {

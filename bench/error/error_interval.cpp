@@ -1,9 +1,9 @@
+// The interval of an image's error: its tiles are drawn again and again, with replacement.
 #include "bench/error/error_interval.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 
 namespace gnomon {
@@ -69,14 +69,15 @@ bool mean_figures(const std::vector<Sums>& planes, Figures& mean) {
 
 }  // namespace
 
-nlohmann::json error_intervals(std::span<const ComparedPlane> planes, uint32_t width, uint32_t height) {
+std::optional<std::map<std::string, std::array<double, 2>>> error_intervals(
+    std::span<const ComparedPlane> planes, uint32_t width, uint32_t height) {
   std::vector<std::vector<Sums>> tiles;
   for (const ComparedPlane& plane : planes) tiles.push_back(sums_of_tiles(plane, width, height));
   std::vector<size_t> used;  // tiles with counted pixels in any plane
   for (size_t t = 0; !tiles.empty() && t < tiles[0].size(); ++t)
     if (std::any_of(tiles.begin(), tiles.end(), [&](const auto& plane) { return plane[t].pixels > 0; }))
       used.push_back(t);
-  if (used.empty()) return nullptr;
+  if (used.empty()) return std::nullopt;
   std::mt19937 generator(seed);
   std::array<std::vector<double>, names.size()> drawn;
   for (size_t drawing = 0; drawing < drawings; ++drawing) {
@@ -86,10 +87,10 @@ nlohmann::json error_intervals(std::span<const ComparedPlane> planes, uint32_t w
       for (size_t plane = 0; plane < tiles.size(); ++plane) sums[plane] += tiles[plane][tile];
     }
     Figures mean;
-    if (!mean_figures(sums, mean)) return nullptr;
+    if (!mean_figures(sums, mean)) return std::nullopt;
     for (size_t k = 0; k < mean.size(); ++k) drawn[k].push_back(mean[k]);
   }
-  nlohmann::json intervals = nlohmann::json::object();
+  std::map<std::string, std::array<double, 2>> intervals;
   const auto skip = static_cast<size_t>(beyond * drawings);
   for (size_t k = 0; k < names.size(); ++k) {
     std::sort(drawn[k].begin(), drawn[k].end());

@@ -1,9 +1,12 @@
 // How much the error of an image depends on which parts of it are looked at.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
+#include <map>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gnomon {
@@ -21,8 +24,9 @@ struct ComparedPlane {
 // or another view, has other edges. The image is cut into tiles, as many tiles are drawn from it with
 // replacement, and the interval holds the middle 95 % of the figures of 400 such drawings (block bootstrap,
 // Efron and Tibshirani 1993, ch. 8 and 13; whole tiles, since neighbouring pixels err together). The drawings
-// are the same for every technique, and in every run. Null without counted pixels or with values that are not
-// finite.
-nlohmann::json error_intervals(std::span<const ComparedPlane> planes, uint32_t width, uint32_t height);
+// are the same for every technique, and in every run. Nothing without counted pixels or with values that are
+// not finite.
+std::optional<std::map<std::string, std::array<double, 2>>> error_intervals(
+    std::span<const ComparedPlane> planes, uint32_t width, uint32_t height);
 
 }  // namespace gnomon

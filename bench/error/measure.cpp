@@ -1,3 +1,4 @@
+// The error of one rendered image against the ray-traced reference, with acne and leak.
 #include "bench/error/measure.h"
 
 #include <fmt/format.h>
@@ -6,71 +7,42 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
+#include "bench/error/error_fields.h"
 #include "engine/base/error.h"
 
 namespace gnomon {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-using Optional = std::optional<double> ErrorMetrics::*;
-using Value = double ErrorMetrics::*;
+using OptionalFigure = std::optional<double> ErrorMetrics::*;
+using Figure = double ErrorMetrics::*;
 
-// Names in the order of a result row.
-struct ValueField {
-  const char* name;
-  Value field;
-};
-struct OptionalField {
-  const char* name;
-  Optional field;
-};
-constexpr ValueField value_fields[] = {{"rmse", &ErrorMetrics::rmse},
-                                       {"mae", &ErrorMetrics::mae},
-                                       {"max", &ErrorMetrics::max},
-                                       {"bias", &ErrorMetrics::bias},
-                                       {"misclassified", &ErrorMetrics::misclassified},
-                                       {"wrongly_lit", &ErrorMetrics::wrongly_lit},
-                                       {"wrongly_shadowed", &ErrorMetrics::wrongly_shadowed}};
-constexpr OptionalField optional_fields[] = {{"penumbra_rmse", &ErrorMetrics::penumbra_rmse},
-                                             {"umbra_light", &ErrorMetrics::umbra_light},
-                                             {"leak", &ErrorMetrics::leak},
-                                             {"over_shadow", &ErrorMetrics::over_shadow},
-                                             {"acne", &ErrorMetrics::acne},
-                                             {"ssim", &ErrorMetrics::ssim},
-                                             {"flip", &ErrorMetrics::flip}};
+constexpr Figure figures[] = {&ErrorMetrics::rmse,
+                              &ErrorMetrics::mae,
+                              &ErrorMetrics::max,
+                              &ErrorMetrics::bias,
+                              &ErrorMetrics::misclassified,
+                              &ErrorMetrics::wrongly_lit,
+                              &ErrorMetrics::wrongly_shadowed};
+constexpr OptionalFigure optional_figures[] = {
+    &ErrorMetrics::penumbra_rmse, &ErrorMetrics::umbra_light, &ErrorMetrics::leak, &ErrorMetrics::over_shadow,
+    &ErrorMetrics::acne,          &ErrorMetrics::ssim,        &ErrorMetrics::flip};
 
-std::optional<double> mean_of(const std::vector<const ErrorMetrics*>& lights, Optional field) {
+std::optional<double> mean_of(const std::vector<const LightError*>& lights, OptionalFigure field) {
   double sum = 0;
   size_t count = 0;
-  for (const ErrorMetrics* m : lights)
+  for (const LightError* m : lights)
     if (m->*field) sum += *(m->*field), ++count;
   return count ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
 }
 
-double mean_of(const std::vector<const ErrorMetrics*>& lights, Value field) {
+double mean_of(const std::vector<const LightError*>& lights, Figure field) {
   double sum = 0;
-  for (const ErrorMetrics* m : lights) sum += m->*field;
+  for (const LightError* m : lights) sum += m->*field;
   return lights.empty() ? nan : sum / static_cast<double>(lights.size());
-}
-
-ErrorMetrics over_lights(const std::vector<ErrorMetrics>& lights) {
-  ErrorMetrics all;
-  std::vector<const ErrorMetrics*> used;
-  for (const ErrorMetrics& m : lights) {
-    all.pixels += m.pixels;
-    all.excluded += m.excluded;
-    all.nonfinite += m.nonfinite;
-    all.out_of_range += m.out_of_range;
-    if (m.pixels > 0 || m.nonfinite > 0) used.push_back(&m);
-  }
-  for (const auto& [name, field] : value_fields) all.*field = mean_of(used, field);
-  for (const auto& [name, field] : optional_fields) all.*field = mean_of(used, field);
-  for (const ErrorMetrics* m : used)
-    if (!std::isnan(all.max)) all.max = std::max(all.max, m->max);
-  return all;
 }
 
 // KHR_lights_punctual, "inner and outer cone angles".
@@ -110,6 +82,42 @@ std::optional<double> mean_over(std::span<const float> result, const std::vector
 }
 
 }  // namespace
+
+LightError over_lights(const std::vector<LightError>& lights) {
+  LightError all;
+  std::vector<const LightError*> used;
+  for (const LightError& m : lights) {
+    all.pixels += m.pixels;
+    all.excluded += m.excluded;
+    all.nonfinite += m.nonfinite;
+    all.out_of_range += m.out_of_range;
+    if (m.pixels > 0 || m.nonfinite > 0) used.push_back(&m);
+  }
+  for (const Figure field : figures) all.*field = mean_of(used, field);
+  for (const OptionalFigure field : optional_figures) all.*field = mean_of(used, field);
+  for (const LightError* m : used)
+    if (!std::isnan(all.max)) all.max = std::max(all.max, m->max);
+  if (all.pixels == 0 && !lights.empty()) all.reason = lights.front().reason;
+  return all;
+}
+
+std::string why_none_counts(std::span<const uint8_t> domain) {
+  struct Kind {
+    uint8_t domain;
+    const char* what;
+  };
+  constexpr Kind kinds[] = {{Reference::faces_away, "face away from the light"},
+                            {Reference::outside_light, "lie outside of what it shines on"},
+                            {Reference::no_geometry, "show no geometry"}};
+  const auto count = [&](uint8_t kind) { return std::count(domain.begin(), domain.end(), kind); };
+  if (count(Reference::counted) > 0) return {};
+  std::string text = "no pixel counts";
+  const char* before = ": ";
+  for (const auto& [kind, what] : kinds)
+    if (const auto pixels = count(kind); pixels > 0)
+      text += fmt::format("{}{} {}", std::exchange(before, ", "), pixels, what);
+  return text;
+}
 
 std::string visibility_channel(uint32_t light) { return light == 0 ? "Y" : fmt::format("light{}.Y", light); }
 
@@ -151,8 +159,9 @@ MeasuredError measure_visibility(const Image& visibility, const Reference& refer
   MeasuredError error;
   for (uint32_t i = 0; i < reference.lights; ++i) {
     const auto result = visibility.plane(visibility_channel(i));
-    ErrorMetrics m = compare_visibility(result, reference.visibility[i], reference.domain[i], reference.width,
-                                        reference.height);
+    LightError m{compare_visibility(result, reference.visibility[i], reference.domain[i], reference.width,
+                                    reference.height),
+                 why_none_counts(reference.domain[i])};
     const bool measurable = m.nonfinite == 0 && m.pixels > 0;
     if (edges.tracer && m.nonfinite > 0) m.acne = nan;
     if (edges.tracer && measurable) m.acne = measure_acne(result, reference, i, edges);
@@ -183,24 +192,6 @@ Image shade_reference(const Scene& scene, const Camera& camera, const Reference&
   return image;
 }
 
-nlohmann::json to_json(const ErrorMetrics& metrics) {
-  nlohmann::json json = nlohmann::json::object();
-  const auto number = [](double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(); };
-  for (const auto& [name, field] : value_fields) json[name] = number(metrics.*field);
-  for (const auto& [name, field] : optional_fields)
-    if (metrics.*field) json[name] = number(*(metrics.*field));
-  json["pixels"] = metrics.pixels;
-  json["excluded"] = metrics.excluded;
-  json["nonfinite"] = metrics.nonfinite;
-  json["out_of_range"] = metrics.out_of_range;
-  return json;
-}
-
-nlohmann::json to_json(const MeasuredError& error) {
-  nlohmann::json json = to_json(error.all);
-  if (error.lights.size() < 2) return json;
-  for (const ErrorMetrics& m : error.lights) json["lights"].push_back(to_json(m));
-  return json;
-}
+nlohmann::json to_json(const MeasuredError& error) { return FieldWriter::written(error); }
 
 }  // namespace gnomon

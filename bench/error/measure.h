@@ -1,8 +1,11 @@
 // The error of one rendered image against the ray-traced reference.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,12 +20,26 @@ namespace gnomon {
 // "Y", "light1.Y", ...: a light's channel of a visibility image.
 std::string visibility_channel(uint32_t light);
 
+struct LightError : ErrorMetrics {
+  std::string reason;  // why no pixel counts; empty where some do
+};
+
+// The `error` object of a result row.
 struct MeasuredError {
-  std::vector<ErrorMetrics> lights;  // one per light of the reference
+  std::vector<LightError> lights;  // one per light of the reference
   // Over the lights: counts are summed, `max` is the largest, the rest are means over the lights with counted
   // pixels (NaN when there are none, or when any light has non-finite results).
-  ErrorMetrics all;
+  LightError all;
+  std::optional<std::map<std::string, std::array<double, 2>>> intervals;  // error_intervals()
+  std::optional<double> reference_noise;  // of soft shadows: Reference::noise_floor
+  std::optional<double> flicker;          // of a sequence's frame: mean over the lights
 };
+// The means and sums over the lights.
+LightError over_lights(const std::vector<LightError>& lights);
+
+// "no pixel counts: 12 face away from the light, 3 lie outside its map, 85 show no geometry"; empty when some
+// pixel of the domain (Reference::domain) counts.
+std::string why_none_counts(std::span<const uint8_t> domain);
 
 // What acne and leak need beyond the two images. Without a tracer they are absent.
 struct EdgeSettings {
@@ -53,9 +70,7 @@ double measure_acne(std::span<const float> result, const Reference& reference, u
 // and range as in KHR_lights_punctual. `camera`: that the reference was traced with.
 Image shade_reference(const Scene& scene, const Camera& camera, const Reference& reference);
 
-// The `error` object of a result row. Metrics that do not apply are left out; NaN becomes null.
-nlohmann::json to_json(const ErrorMetrics& metrics);
-// `all`, and with several lights the array `lights` beside.
+// `all`, and each light of `lights`. Metrics that do not apply are left out; NaN becomes null.
 nlohmann::json to_json(const MeasuredError& error);
 
 }  // namespace gnomon

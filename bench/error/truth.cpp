@@ -1,27 +1,21 @@
+// A scene's reference at one size: traced or read from the cache, and the errors of images against it.
 #include "bench/error/truth.h"
 
 #include <algorithm>
 #include <future>
-#include <nlohmann/json.hpp>
 
 #include "bench/error/error_interval.h"
 #include "bench/error/measure.h"
 #include "engine/base/error.h"
 #include "engine/truth/metrics.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint32_t usual_map_size = 1024;  // texels
-
-uint32_t map_size_of(const Values& vars) {
-  const auto found = vars.find("shadow_map");
-  if (found == vars.end()) return usual_map_size;
-  const auto* texels = std::get_if<std::int64_t>(&found->second);
-  return texels != nullptr && *texels > 0 ? static_cast<uint32_t>(*texels) : usual_map_size;
-}
+constexpr uint32_t usual_map_side = 1024;  // texels: of techniques without a map
 
 }  // namespace
 
@@ -48,8 +42,8 @@ const std::vector<std::vector<uint32_t>>& Truth::deep_umbra_of(const EdgeSetting
   return found->second;
 }
 
-std::string Truth::error_json(const Image& visibility, const Image* color, const Values& vars) const {
-  const EdgeSettings edges{&tracer_, camera_, map_size_of(vars)};
+MeasuredError Truth::error(const Image& visibility, const Image* color, const Graph& graph) const {
+  const EdgeSettings edges{&tracer_, camera_, map_side(graph).value_or(usual_map_side)};
   // FLIP takes about as long as all the rest together, and shares nothing with it.
   std::future<double> flipped;
   if (color != nullptr)
@@ -57,14 +51,13 @@ std::string Truth::error_json(const Image& visibility, const Image* color, const
         std::async(std::launch::async, [color, &truth = shaded()] { return flip(rgb_of(*color), truth); });
   MeasuredError error = measure_visibility(visibility, reference_, edges, deep_umbra_of(edges));
   if (color != nullptr) error.all.flip = flipped.get();
-  nlohmann::json object = to_json(error);
   std::vector<ComparedPlane> planes;
   for (uint32_t i = 0; i < reference_.lights; ++i)
     planes.push_back(
         {visibility.plane(visibility_channel(i)), reference_.visibility[i], reference_.domain[i]});
-  object["ci95"] = error_intervals(planes, reference_.width, reference_.height);
-  if (reference_.noise_floor > 0) object["reference_noise"] = reference_.noise_floor;
-  return object.dump();
+  error.intervals = error_intervals(planes, reference_.width, reference_.height);
+  if (reference_.noise_floor > 0) error.reference_noise = reference_.noise_floor;
+  return error;
 }
 
 const Image& Truth::shaded() const {

@@ -18,16 +18,17 @@ namespace gnomon {
 // The channels R, G, B of a shaded image; Error when one is missing.
 Image rgb_of(const Image& color);
 
+struct Graph;  // engine/graph/graph.h
+
 class Truth {
  public:
   // Traces, or reads from `cache`.
   Truth(std::shared_ptr<const Scene> scene, const ReferenceSettings& settings,
         const std::filesystem::path& cache);
 
-  // The `error` object of a result row, as JSON text. `color`: the shaded image, for FLIP; may be nullptr.
-  // `vars`: of the graph; `shadow_map` is the map's side in texels that acne and leak are judged by (1024
-  // when there is none).
-  std::string error_json(const Image& visibility, const Image* color, const Values& vars) const;
+  // `color`: the shaded image, for FLIP; may be nullptr. `graph`: whose widest map's texels acne and leak are
+  // judged by (map_side; 1024 when there is none).
+  MeasuredError error(const Image& visibility, const Image* color, const Graph& graph) const;
   const Reference& reference() const { return reference_; }
   const Image& shaded() const;  // shade_reference() of it
 

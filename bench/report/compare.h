@@ -1,9 +1,10 @@
 // What changed between two runs of a suite.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
+
+#include "bench/run/row.h"
 
 namespace gnomon {
 
@@ -31,8 +32,7 @@ struct Comparison {
 // 95 % intervals do not overlap and the medians differ by more than the share `tolerance`. Errors are the
 // same bits on the same device: any difference counts. A row that no longer runs is a regression; one that is
 // not in `after` is not.
-Comparison compare_results(const std::vector<nlohmann::json>& before,
-                           const std::vector<nlohmann::json>& after, double tolerance);
+Comparison compare_results(const std::vector<Row>& before, const std::vector<Row>& after, double tolerance);
 
 // A table of the changes and a line that counts them.
 std::string to_table(const Comparison& comparison);

@@ -1,3 +1,4 @@
+// Finds the measurements that no other one beats in time and error.
 #include "bench/report/pareto.h"
 
 #include <algorithm>

@@ -1,20 +1,20 @@
+// Picks the technique and setting that a budget of time or error asks for.
 #include "bench/report/pick.h"
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "bench/report/report_rows.h"
 
 namespace gnomon {
 
-std::optional<size_t> pick_row(const std::vector<nlohmann::json>& rows, const PickRule& rule) {
+std::optional<size_t> pick_row(const std::vector<Row>& rows, const PickRule& rule) {
   std::optional<size_t> best;
   std::pair<double, double> best_score;
   for (size_t i = 0; i < rows.size(); ++i) {
-    const auto ms = figure_at(rows[i], "/frame_ms/median");
+    const auto ms = frame_ms_of(rows[i]);
     const auto error = error_of(rows[i], rule.metric);
-    if (!is_ok(rows[i]) || !ms || !error) continue;
-    if (rule.max_ms && figure_at(rows[i], "/frame_ms/ci95/1").value_or(*ms) > *rule.max_ms) continue;
+    if (!rows[i].ok() || !ms || !error) continue;
+    if (rule.max_ms && rows[i].frame_ms->high > *rule.max_ms) continue;
     if (rule.max_error && error->value > *rule.max_error) continue;
     const auto score = rule.max_ms ? std::pair(error->value, *ms) : std::pair(*ms, error->value);
     if (best && !(score < best_score)) continue;

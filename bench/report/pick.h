@@ -1,10 +1,11 @@
 // The technique and setting that a budget of time or error asks for.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "bench/run/row.h"
 
 namespace gnomon {
 
@@ -17,6 +18,6 @@ struct PickRule {
 
 // Index of the row that wins: with max_ms the least error, else the least median time, among the rows that
 // keep the bounds; of equal ones the better in the other figure, then the first. None keeps them: nothing.
-std::optional<size_t> pick_row(const std::vector<nlohmann::json>& rows, const PickRule& rule);
+std::optional<size_t> pick_row(const std::vector<Row>& rows, const PickRule& rule);
 
 }  // namespace gnomon

@@ -1,16 +1,16 @@
+// What a report shows: rows, what can be compared with one another, and the Pareto fronts.
 #include "bench/report/report_data.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "bench/report/pareto.h"
-#include "bench/report/report_fit.h"
 #include "bench/report/report_image_files.h"
-#include "bench/run/run_json.h"
+#include "bench/report/report_sweeps.h"
 #include "engine/truth/metrics.h"
 
 namespace gnomon {
@@ -18,35 +18,24 @@ namespace {
 
 using nlohmann::json;
 
-json field(const json& row, const char* name) {
-  const auto found = row.find(name);
-  return found == row.end() ? json() : *found;
-}
-
 // Rows with the same place saw the same pixels on the same device.
-json place_of(const json& row) {
-  const auto samples = figure_at(row, "/reference/samples");
-  const auto frames = figure_at(row, "/sequence/frames");
-  return {{"scene", field(row, "scene")},
-          {"size", field(row, "size")},
-          {"camera", field(row, "camera")},
-          {"light_scale", figure_at(row, "/light_scale").value_or(1)},
-          {"device", field(row, "device")},
-          {"driver", field(row, "driver")},
-          {"samples", samples ? json(*samples) : json()},
-          {"frames", frames ? json(*frames) : json()}};
+json place_of(const Row& row) {
+  return {{"scene", row.scene},
+          {"size", {row.size.width, row.size.height}},
+          {"camera", row.camera},
+          {"light_scale", row.light_scale},
+          {"device", row.device.name},
+          {"driver", row.device.driver},
+          {"samples", row.reference ? json(row.reference->samples) : json()},
+          {"frames", row.sequence ? json(row.sequence->frames) : json()}};
 }
 
-json interval_at(const json& row, const std::string& pointer) {
-  const auto median = figure_at(row, pointer + "/median");
-  if (!median) return nullptr;
-  const double low = figure_at(row, pointer + "/ci95/0").value_or(*median);
-  const double high = figure_at(row, pointer + "/ci95/1").value_or(*median);
-  return {
-      {"median", *median}, {"low", low}, {"high", high}, {"n", figure_at(row, pointer + "/n").value_or(1)}};
+json interval_of(const std::optional<Summary>& summary) {
+  if (!summary || !std::isfinite(summary->median)) return nullptr;
+  return {{"median", summary->median}, {"low", summary->low}, {"high", summary->high}, {"n", summary->n}};
 }
 
-json errors_of(const json& row) {
+json errors_of(const Row& row) {
   json errors = json::object();
   for (const std::string& metric : error_metrics())
     if (const auto error = error_of(row, metric))
@@ -54,22 +43,18 @@ json errors_of(const json& row) {
   return errors;
 }
 
-// Passes in their order, turns of a loop added up.
-json passes_of(const json& row) {
+// Passes in their order, iterations of a loop added up.
+json passes_of(const Row& row) {
   json passes = json::array();
   std::map<std::string, size_t> known;
-  const json rows = field(row, "passes");
-  if (!rows.is_array()) return passes;
-  for (const json& pass : rows) {
-    auto ms = figure_at(pass, "/gpu_ms/overlapped/median");
-    if (!ms) ms = figure_at(pass, "/gpu_ms/isolated/median");
-    if (!ms) continue;
-    const std::string id = value_text(field(pass, "id"));
-    const auto [found, is_new] = known.emplace(id, passes.size());
+  for (const PassFigures& pass : row.passes) {
+    const auto& ms = pass.gpu_ms.overlapped ? pass.gpu_ms.overlapped : pass.gpu_ms.isolated;
+    if (!ms || !std::isfinite(ms->median)) continue;
+    const auto [found, is_new] = known.emplace(pass.id, passes.size());
     if (is_new)
-      passes.push_back({{"id", id}, {"type", field(pass, "type")}, {"ms", *ms}});
+      passes.push_back({{"id", pass.id}, {"type", pass.type}, {"ms", ms->median}});
     else
-      passes[found->second]["ms"] = passes[found->second]["ms"].get<double>() + *ms;
+      passes[found->second]["ms"] = passes[found->second]["ms"].get<double>() + ms->median;
   }
   return passes;
 }
@@ -77,45 +62,42 @@ json passes_of(const json& row) {
 // By kind: where they are. What is no image file of the run is left out.
 json images_of(const ReportRow& source) {
   json images = json::object();
-  const json given = field(source.row, "images");
-  if (given.is_object())
-    for (const auto& [kind, name] : given.items())
-      if (const auto file = name.is_string() ? image_below(source.folder, name) : std::nullopt)
-        images[kind] = file->string();
+  for (const auto& [kind, name] : source.row.images)
+    if (const auto file = image_below(source.folder, name)) images[kind] = file->string();
   return images;
 }
 
-bool is_baseline(const json& row) {
-  return figure_at(row, "/ratio/median") == 1.0 && figure_at(row, "/ratio/mad") == 0.0 &&
-         value_text(json(row.value("/ratio/baseline"_json_pointer, "")))
-             .starts_with(value_text(field(row, "graph")));
+json left_out_of(const Row& row) {
+  json passes = json::array();
+  for (const LeftOutPass& pass : row.left_out)
+    passes.push_back({{"pass", pass.pass}, {"part", pass.part}, {"reason", pass.reason}});
+  return passes;
 }
 
 json row_of(const ReportRow& source) {
-  const json& row = source.row;
+  const Row& row = source.row;
   json passes = passes_of(row);
   double in_passes = 0;
   for (const json& pass : passes) in_passes += pass["ms"].get<double>();
-  const json ms = interval_at(row, "/frame_ms");
-  const double rest =
-      ms.is_null() || passes.empty() ? 0 : std::max(0.0, ms["median"].get<double>() - in_passes);
-  return {{"technique", field(row, "graph")},
-          {"label", row_label(row)},
-          {"baseline", is_baseline(row)},
-          {"ms", ms},
-          {"ratio", interval_at(row, "/ratio")},
-          {"ratio_to", row.value("/ratio/baseline"_json_pointer, json())},
+  const auto ms = frame_ms_of(row);
+  const double rest = !ms || passes.empty() ? 0 : std::max(0.0, *ms - in_passes);
+  return {{"technique", row.graph},
+          {"label", label_of(row)},
+          {"baseline", row.is_baseline},
+          {"ms", interval_of(row.frame_ms)},
+          {"ratio", interval_of(row.ratio ? std::optional(row.ratio->value) : std::nullopt)},
+          {"ratio_to", row.ratio ? json(row.ratio->baseline) : json()},
           {"errors", errors_of(row)},
           {"passes", std::move(passes)},
           {"rest_ms", rest},
-          {"peak_bytes", row.value("/memory/peak_bytes"_json_pointer, json())},
-          {"left_out", field(row, "left_out").is_array() ? row["left_out"] : json::array()},
-          {"warnings", field(row, "warnings").is_array() ? row["warnings"] : json::array()},
+          {"peak_bytes", row.memory.use.peak_bytes > 0 ? json(row.memory.use.peak_bytes) : json()},
+          {"left_out", left_out_of(row)},
+          {"warnings", row.warnings},
           {"images", images_of(source)},
-          {"images_named", field(source.row, "images").size()},
-          {"vars", field(row, "vars")},
-          {"set", field(row, "set")},
-          {"key", field(row, "key")}};
+          {"images_named", source.row.images.size()},
+          {"vars", to_json(row.vars)},
+          {"set", to_json(row.set)},
+          {"key", row.key.empty() ? json() : json(row.key)}};
 }
 
 json metrics_of(const json& rows) {
@@ -141,10 +123,10 @@ json steady_ms_of(const json& row, const json& rows, const std::vector<size_t>& 
   for (const size_t id : ids) {
     const json& other = rows[id];
     if (other["baseline"] != true || other["label"] != row["ratio_to"]) continue;
-    const auto scale = figure_at(other, "/ms/median");
-    if (!scale) continue;
+    if (other["ms"].is_null()) continue;
+    const double scale = other["ms"]["median"];
     json steady = row["ratio"];
-    for (const char* name : {"median", "low", "high"}) steady[name] = *scale * steady[name].get<double>();
+    for (const char* name : {"median", "low", "high"}) steady[name] = scale * steady[name].get<double>();
     return steady;
   }
   return row["ms"];
@@ -189,140 +171,26 @@ json places_of(json& rows, const std::vector<json>& keys, const json& metrics) {
   return places;
 }
 
-json fit(const std::vector<double>& x, const std::vector<std::optional<double>>& y) {
-  std::vector<double> there_x, there_y;
-  for (size_t i = 0; i < x.size(); ++i)
-    if (y[i]) there_x.push_back(x[i]), there_y.push_back(*y[i]);
-  const auto law = fit_power_law(there_x, there_y);
-  if (!law) return nullptr;
-  return {{"exponent", law->exponent}, {"factor", law->factor}, {"r2", law->r2}, {"n", law->n}};
-}
-
-// Parameters of a place, and the member that they are made of; all others are variables of the graph.
-const std::map<std::string, std::string>& place_parameters() {
-  static const std::map<std::string, std::string> parameters = {{"output_pixels", "size"},
-                                                                {"light_scale", "light_scale"}};
-  return parameters;
-}
-
-std::optional<double> parameter_of(const json& row, const json& place, const std::string& name) {
-  if (place_parameters().count(name) == 0) return figure_at(row, "/vars/" + name);
-  if (name == "light_scale") return figure_at(place, "/light_scale");
-  const auto width = figure_at(place, "/size/0"), height = figure_at(place, "/size/1");
-  return width && height ? std::optional(*width * *height) : std::nullopt;
-}
-
-// All that must be equal for two rows to differ in `parameter` only.
-json others_of(const json& row, json place, const std::string& parameter) {
-  json vars = row["vars"].is_object() ? row["vars"] : json::object();
-  const auto of_place = place_parameters().find(parameter);
-  if (of_place != place_parameters().end())
-    place.erase(of_place->second);
-  else
-    vars.erase(parameter);
-  return {place, row["technique"], vars};
-}
-
-std::string fixed_text(const json& row, const json& place, const std::string& parameter) {
-  std::vector<std::string> parts;
-  if (parameter != "output_pixels" && place["size"].is_array() && place["size"].size() == 2)
-    parts.push_back(fmt::format("{}x{}", place["size"][0].dump(), place["size"][1].dump()));
-  if (parameter != "light_scale" && place["light_scale"] != 1)
-    parts.push_back(fmt::format("light_scale={}", value_text(place["light_scale"])));
-  if (row["set"].is_object())
-    for (const auto& [name, value] : row["set"].items())
-      if (name != parameter) parts.push_back(fmt::format("{}={}", name, value_text(value)));
-  return fmt::format("{}", fmt::join(parts, " "));
-}
-
-json sweep(const json& rows, const json& place, const std::string& parameter, std::vector<size_t> ids,
-           const json& metrics) {
-  const auto x_of = [&](size_t id) { return *parameter_of(rows[id], rows[id]["_place"], parameter); };
-  std::stable_sort(ids.begin(), ids.end(), [&](size_t a, size_t b) { return x_of(a) < x_of(b); });
-  ids.erase(std::unique(ids.begin(), ids.end(), [&](size_t a, size_t b) { return x_of(a) == x_of(b); }),
-            ids.end());
-  if (ids.size() < 2) return nullptr;
-  std::vector<double> x;
-  std::vector<std::optional<double>> ms;
-  for (const size_t id : ids) x.push_back(x_of(id)), ms.push_back(figure_at(rows[id], "/ms/median"));
-  json errors = json::object();
-  for (const json& metric : metrics) {
-    const std::string name = metric["name"];
-    std::vector<std::optional<double>> values;
-    for (const size_t id : ids) values.push_back(figure_at(rows[id], "/errors/" + name + "/value"));
-    errors[name] = fit(x, values);
-  }
-  return {{"scene", place["scene"]},
-          {"technique", rows[ids.front()]["technique"]},
-          {"parameter", parameter},
-          {"fixed", fixed_text(rows[ids.front()], place, parameter)},
-          {"rows", ids},
-          {"x", x},
-          {"ms", fit(x, ms)},
-          {"errors", errors}};
-}
-
-json sweeps_of(const json& rows, const json& metrics) {
-  std::set<std::string> names;
-  for (const json& row : rows)
-    if (row["vars"].is_object())
-      for (const auto& [name, value] : row["vars"].items())
-        if (value.is_number()) names.insert(name);
-  std::vector<std::string> parameters(names.begin(), names.end());
-  for (const auto& [name, member] : place_parameters()) parameters.insert(parameters.begin(), name);
-  json sweeps = json::array();
-  for (const std::string& parameter : parameters) {
-    std::vector<json> groups;
-    std::vector<std::vector<size_t>> members;
-    for (size_t id = 0; id < rows.size(); ++id) {
-      if (!parameter_of(rows[id], rows[id]["_place"], parameter)) continue;
-      const json key = others_of(rows[id], rows[id]["_place"], parameter);
-      const auto found = std::find(groups.begin(), groups.end(), key);
-      const auto group = static_cast<size_t>(found - groups.begin());
-      if (found == groups.end()) groups.push_back(key), members.emplace_back();
-      members[group].push_back(id);
-    }
-    for (const std::vector<size_t>& ids : members)
-      if (json one = sweep(rows, rows[ids.front()]["_place"], parameter, ids, metrics); !one.is_null())
-        sweeps.push_back(std::move(one));
-  }
-  return sweeps;
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + '"';
-}
-
-std::string csv_text(const json& value) {
-  if (value.is_null()) return {};
-  return quoted(value_text(value));
-}
-
 }  // namespace
 
 json report_data(const std::vector<ReportRow>& sources) {
   json rows = json::array(), failed = json::array();
   std::vector<json> places;
   for (const ReportRow& source : sources) {
-    if (!is_ok(source.row)) {
-      failed.push_back({{"label", row_label(source.row)},
-                        {"scene", field(source.row, "scene")},
-                        {"size", field(source.row, "size")},
-                        {"status", field(source.row, "status")}});
+    if (!source.row.ok()) {
+      failed.push_back({{"label", label_of(source.row)},
+                        {"scene", source.row.scene},
+                        {"size", {source.row.size.width, source.row.size.height}},
+                        {"status", source.row.status}});
       continue;
     }
     json row = row_of(source);
     row["id"] = rows.size();
-    row["_place"] = place_of(source.row);
-    places.push_back(row["_place"]);
+    places.push_back(place_of(source.row));
     rows.push_back(std::move(row));
   }
   const json metrics = metrics_of(rows);
-  json sweeps = sweeps_of(rows, metrics);
-  for (json& row : rows) row.erase("_place");
+  json sweeps = sweeps_of(rows, places, metrics);
   json grouped = places_of(rows, places, metrics);
   return {{"schema", 1},
           {"gnomon", version()},
@@ -331,44 +199,6 @@ json report_data(const std::vector<ReportRow>& sources) {
           {"rows", std::move(rows)},
           {"sweeps", std::move(sweeps)},
           {"failed", failed}};
-}
-
-std::string report_csv(const json& report) {
-  std::string text =
-      "scene,width,height,light_scale,device,technique,label,baseline,ms,ms_low,ms_high,ratio,ratio_low,"
-      "ratio_high,"
-      "steady_ms,steady_ms_low,steady_ms_high,peak_bytes";
-  for (const json& metric : report["metrics"]) {
-    const std::string name = csv_text(metric["name"]);
-    text += fmt::format(",{0},{0}_low,{0}_high", name);
-  }
-  text += ",pareto\r\n";
-  for (const json& row : report["rows"]) {
-    const json& place = report["places"][row["place"].get<size_t>()];
-    const auto at = [&](const json& from, const char* pointer) {
-      const auto value = figure_at(from, pointer);
-      return value ? fmt::format("{}", *value) : std::string();
-    };
-    std::vector<std::string> cells = {
-        csv_text(place["scene"]),  at(place, "/size/0"),       at(place, "/size/1"),
-        at(place, "/light_scale"), csv_text(place["device"]),  csv_text(row["technique"]),
-        csv_text(row["label"]),    row["baseline"].dump(),     at(row, "/ms/median"),
-        at(row, "/ms/low"),        at(row, "/ms/high"),        at(row, "/ratio/median"),
-        at(row, "/ratio/low"),     at(row, "/ratio/high"),     at(row, "/steady_ms/median"),
-        at(row, "/steady_ms/low"), at(row, "/steady_ms/high"), at(row, "/peak_bytes")};
-    std::string fronts;
-    for (const json& metric : report["metrics"]) {
-      const std::string name = metric["name"];
-      for (const char* figure : {"value", "low", "high"})
-        cells.push_back(at(row, ("/errors/" + name + "/" + figure).c_str()));
-      const json& front = place["fronts"][name];
-      if (std::find(front.begin(), front.end(), row["id"]) != front.end())
-        fronts += (fronts.empty() ? "" : " ") + name;
-    }
-    cells.push_back(fronts);
-    text += fmt::format("{}\r\n", fmt::join(cells, ","));
-  }
-  return text;
 }
 
 }  // namespace gnomon

@@ -28,7 +28,8 @@ namespace gnomon {
 // Paths of images are absolute: `folder` of the row and what the row says.
 nlohmann::json report_data(const std::vector<ReportRow>& rows);
 
-// One line per row of report_data(): scene, size, technique, variables, times, errors. RFC 4180.
+// One line per row of report_data(): scene, size, technique, variables, times, errors. RFC 4180; text that a
+// spreadsheet would take for a formula begins with an apostrophe.
 std::string report_csv(const nlohmann::json& report);
 
 }  // namespace gnomon

@@ -1,3 +1,4 @@
+// Fits how time and error grow with a parameter, as powers of it.
 #include "bench/report/report_fit.h"
 
 #include <algorithm>

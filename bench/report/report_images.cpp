@@ -1,3 +1,4 @@
+// Writes the PNGs that a report shows of a measured row.
 #include "bench/report/report_images.h"
 
 #include <fmt/format.h>
@@ -44,9 +45,9 @@ Image first_light(const Image& visibility) {
 // Of everything that the reference depends on as far as rows of one folder differ in it.
 std::string reference_name(const Row& row) {
   const nlohmann::json identity = {
-      row.scene.string(), row.size.width,        row.size.height,         row.camera,
-      row.light_scale,    row.reference_samples, row.sequence.has_value()};
-  return row.scene.stem().string() + "-" + canonical_hash(identity);
+      row.scene_file.string(), row.size.width,         row.size.height,         row.camera,
+      row.light_scale,         row.reference->samples, row.sequence.has_value()};
+  return row.scene + "-" + canonical_hash(identity);
 }
 
 class ImageFolder {

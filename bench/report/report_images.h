@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bench/error/truth.h"
-#include "bench/run/run_json.h"
+#include "bench/run/row.h"
 #include "engine/image/image.h"
 
 namespace gnomon {

@@ -2,15 +2,16 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/run/row.h"
+
 namespace gnomon {
 
 struct ReportRow {
-  nlohmann::json row;
+  Row row;
   std::filesystem::path folder;  // that its images are relative to
 };
 
@@ -19,24 +20,17 @@ struct ReportRow {
 // status is "ok", else the latest. Error: a file is missing or broken, or there is no row at all.
 std::vector<ReportRow> merge_results(const std::vector<std::filesystem::path>& places);
 
-bool is_ok(const nlohmann::json& row);
-// A number at a JSON pointer, when it is there and finite.
-std::optional<double> figure_at(const nlohmann::json& row, const std::string& pointer);
-// "pcf kernel=15 shadow_map=512": the graph and what was set.
-std::string row_label(const nlohmann::json& row);
+// Median of the frame's time, milliseconds; absent when it was not measured.
+std::optional<double> frame_ms_of(const Row& row);
 // ", light scale 0.5"; nothing where the lights are as in the scene.
-std::string light_scale_text(const nlohmann::json& row);
-// Text of a variable's value, as after --set.
-std::string value_text(const nlohmann::json& value);
+std::string light_scale_text(const Row& row);
 
-// Names of the metrics in which less is better, in the order of choice: rmse, mae, misclassified, ...
-const std::vector<std::string>& error_metrics();
 // Of a sequence the mean over its frames, with their range.
 struct ErrorFigure {
   double value = 0, low = 0, high = 0;
 };
 // A row's error by `metric`, 0 = none: of `ssim` it is 1 - SSIM, of `bias` its magnitude. Absent when the row
 // has no such figure.
-std::optional<ErrorFigure> error_of(const nlohmann::json& row, const std::string& metric);
+std::optional<ErrorFigure> error_of(const Row& row, const std::string& metric);
 
 }  // namespace gnomon

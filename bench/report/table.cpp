@@ -1,3 +1,4 @@
+// Lays out rows of results.jsonl as a table of text.
 #include "bench/report/table.h"
 
 #include <fmt/format.h>
@@ -5,37 +6,42 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "bench/report/report_rows.h"
+#include "engine/base/printable.h"
 
 namespace gnomon {
 namespace {
 
-using nlohmann::json;
+using Figure = std::optional<double>;
 
 struct Column {
   const char* title = "";
-  const char* pointer = "";  // into a row
+  Figure (*figure)(const Row&) = nullptr;
   double scale = 1;
   int digits = 0;
   bool where_any = false;  // only in tables where some row has a figure
 };
 constexpr Column columns[] = {
-    {"misclass. %", "/error/misclassified", 100, 3},
-    {"wrongly lit %", "/error/wrongly_lit", 100, 3},
-    {"wrongly shad. %", "/error/wrongly_shadowed", 100, 3},
-    {"acne %", "/error/acne", 100, 4},
-    {"RMSE", "/error/rmse", 1, 4},
-    {"mean RMSE", "/sequence/rmse/mean", 1, 4, true},
-    {"flicker", "/flicker", 1, 5, true},
-    {"ms", "/frame_ms/median", 1, 2},
-    {"ratio", "/ratio/median", 1, 3},
+    {"misclass. %", [](const Row& row) { return figure_of(row.error, "misclassified"); }, 100, 3},
+    {"wrongly lit %", [](const Row& row) { return figure_of(row.error, "wrongly_lit"); }, 100, 3},
+    {"wrongly shad. %", [](const Row& row) { return figure_of(row.error, "wrongly_shadowed"); }, 100, 3},
+    {"acne %", [](const Row& row) { return figure_of(row.error, "acne"); }, 100, 4},
+    {"RMSE", [](const Row& row) { return figure_of(row.error, "rmse"); }, 1, 4},
+    {"mean RMSE",
+     [](const Row& row) {
+       return row.sequence && row.sequence->rmse ? Figure(row.sequence->rmse->mean) : std::nullopt;
+     },
+     1, 4, true},
+    {"flicker", [](const Row& row) { return row.flicker; }, 1, 5, true},
+    {"ms", frame_ms_of, 1, 2},
+    {"ratio", [](const Row& row) { return row.ratio ? Figure(row.ratio->value.median) : std::nullopt; }, 1,
+     3},
 };
 constexpr size_t column_count = std::size(columns);
-using Figures = std::vector<std::optional<double>>;
+using Figures = std::vector<Figure>;
 
 struct Line {
   std::string technique, failure;
@@ -46,27 +52,20 @@ struct Group {
   std::vector<Line> lines;
 };
 
-std::optional<double> figure(const json& row, const Column& column) {
-  const json::json_pointer pointer(column.pointer);
-  if (!row.contains(pointer) || !row[pointer].is_number()) return std::nullopt;
-  return column.scale * row[pointer].get<double>();
-}
-
-Figures figures_of(const json& row) {
+Figures figures_of(const Row& row) {
   Figures figures;
-  for (const Column& column : columns) figures.push_back(figure(row, column));
+  for (const Column& column : columns) {
+    const Figure figure = column.figure(row);
+    figures.push_back(figure ? Figure(column.scale * *figure) : std::nullopt);
+  }
   return figures;
 }
 
-std::string text_of(const json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
-
 // Variables of each graph that are not the same in all of its rows.
-std::map<std::string, std::set<std::string>> varying(const std::vector<json>& rows) {
+std::map<std::string, std::set<std::string>> varying(const std::vector<Row>& rows) {
   std::map<std::string, std::map<std::string, std::set<std::string>>> seen;
-  for (const json& row : rows)
-    if (row.contains("vars"))
-      for (const auto& [name, value] : row["vars"].items())
-        seen[row.value("graph", "")][name].insert(text_of(value));
+  for (const Row& row : rows)
+    for (const auto& [name, value] : row.vars) seen[row.graph][name].insert(to_string(value));
   std::map<std::string, std::set<std::string>> names;
   for (const auto& [graph, vars] : seen)
     for (const auto& [name, values] : vars)
@@ -74,31 +73,27 @@ std::map<std::string, std::set<std::string>> varying(const std::vector<json>& ro
   return names;
 }
 
-std::string technique_of(const json& row, const std::map<std::string, std::set<std::string>>& shown) {
-  std::string text = row.value("graph", "?");
-  const auto names = shown.find(text);
-  if (names == shown.end() || !row.contains("vars")) return text;
+std::string technique_of(const Row& row, const std::map<std::string, std::set<std::string>>& shown) {
+  std::string text = printable(row.graph);
+  const auto names = shown.find(row.graph);
+  if (names == shown.end()) return text;
   for (const std::string& name : names->second)
-    if (row["vars"].contains(name)) text += fmt::format(" {}={}", name, text_of(row["vars"][name]));
+    if (const auto value = row.vars.find(name); value != row.vars.end())
+      text += fmt::format(" {}={}", printable(name), printable(to_string(value->second)));
   return text;
 }
 
-std::string size_of(const json& row) {
-  const json size = row.value("size", json::array());
-  return size.size() == 2 ? fmt::format("{}x{}", text_of(size[0]), text_of(size[1])) : std::string("?");
-}
-
-Line line_of(const json& row, const std::string& technique) {
-  const std::string status = row.value("status", "?");
-  return {technique, status == "ok" ? "" : status.substr(0, status.find('\n')), figures_of(row)};
+Line line_of(const Row& row, const std::string& technique) {
+  return {technique, row.ok() ? "" : row.status.substr(0, row.status.find('\n')), figures_of(row)};
 }
 
 // In the order in which scenes and sizes first appear.
-std::vector<Group> group(const std::vector<json>& rows) {
+std::vector<Group> group(const std::vector<Row>& rows) {
   const auto shown = varying(rows);
   std::vector<Group> groups;
-  for (const json& row : rows) {
-    const std::string title = row.value("scene", "?") + ", " + size_of(row) + light_scale_text(row);
+  for (const Row& row : rows) {
+    const std::string title = fmt::format("{}, {}x{}{}", printable(row.scene), row.size.width,
+                                          row.size.height, light_scale_text(row));
     auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.title == title; });
     if (found == groups.end()) found = groups.insert(groups.end(), Group{title, {}});
     found->lines.push_back(line_of(row, technique_of(row, shown)));
@@ -175,7 +170,7 @@ std::string to_text(const Group& one) {
 
 }  // namespace
 
-std::string to_table(const std::vector<json>& rows) {
+std::string to_table(const std::vector<Row>& rows) {
   const std::vector<Group> groups = group(rows);
   std::string text;
   for (const Group& one : groups) text += to_text(one) + "\n";

@@ -1,9 +1,10 @@
 // Rows of results.jsonl as a table to read.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
+
+#include "bench/run/row.h"
 
 namespace gnomon {
 
@@ -12,6 +13,6 @@ namespace gnomon {
 // which a technique ran. Shares are in per cent of the counted pixels; ms is the median frame; ratio is to
 // the suite's baseline. "-" where there is no figure; a row that failed shows its status instead. Variables
 // that are the same in every row of a technique are not shown.
-std::string to_table(const std::vector<nlohmann::json>& rows);
+std::string to_table(const std::vector<Row>& rows);
 
 }  // namespace gnomon

@@ -1,3 +1,4 @@
+// Keeps the measured frames of an unfinished suite on disk, so that it can be resumed.
 #include "bench/run/checkpoint.h"
 
 #include <cerrno>
@@ -48,7 +49,7 @@ Checkpoint::Checkpoint(fs::path file, bool go_on) : file_(std::move(file)) {
   if (!go_on) end();
   if (!fs::exists(file_)) return;
   try {
-    for (const json& line : read_results(file_)) {
+    for (const json& line : read_lines(file_)) {
       group_ = line.at("group");
       for (const Mode& mode : modes)
         if (line.at("mode") == mode.name)

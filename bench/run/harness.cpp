@@ -1,3 +1,4 @@
+// Runs a suite: techniques in turn, row by row into results.jsonl.
 #include "bench/run/harness.h"
 
 #include <fmt/format.h>
@@ -9,8 +10,9 @@
 #include <set>
 
 #include "bench/run/checkpoint.h"
+#include "bench/run/output_lock.h"
 #include "bench/run/results.h"
-#include "engine/base/config.h"
+#include "bench/run/suite_plan.h"
 #include "engine/base/error.h"
 #include "engine/image/image.h"
 
@@ -19,43 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-struct PlaceToMeasure : SuitePlace {
-  std::vector<size_t> configs;
-  std::set<size_t> finished;  // of these, in the run that this one resumes
-};
-
-// Techniques that are measured in turn.
-struct Chunk {
-  size_t baseline = 0;
-  std::vector<size_t> configs;
-};
-
-Row row_of(const Suite& suite, const BenchOptions& options, const SuitePlace& place,
-           const SuiteConfig& config) {
-  Row row;
-  row.scene = place.scene;
-  describe_graph(row, config.graph);
-  row.set = config.set;
-  row.size = place.size;
-  row.light_scale = place.light_scale;
-  row.camera = suite.camera;
-  row.memory_limit = suite.memory;
-  row.reference_samples = suite.samples;
-  row.device = options.device;
-  std::error_code ignored;
-  json identity = {row.scene.string(), fs::file_size(row.scene, ignored),
-                   row.graph_hash,     row.size.width,
-                   row.size.height,    row.camera,
-                   suite.repeat,       suite.instrumented,
-                   suite.samples,      row.device.name,
-                   row.device.driver,  version()};
-  if (row.light_scale != 1) identity.push_back({{"light_scale", row.light_scale}});
-  if (suite.frames > 0) identity.push_back({suite.frames, suite.fps});
-  if (suite.seconds > 0) identity.push_back({{"seconds", suite.seconds}, {"least", suite.least}});
-  row.key = canonical_hash(identity);
-  return row;
-}
 
 class Stopwatch {
  public:
@@ -77,9 +42,21 @@ double seconds_of(const Samples& samples) {
 std::set<std::string> finished_keys(const fs::path& results) {
   std::set<std::string> keys;
   if (!fs::exists(results)) return keys;
-  for (const json& row : read_results(results))
-    if (row.value("status", "") == "ok") keys.insert(row.value("key", ""));
+  for (const Row& row : read_results(results))
+    if (row.ok()) keys.insert(row.key);
   return keys;
+}
+
+// Calls `attempt`; what it throws becomes the row's status.
+template <class Attempt>
+void or_status(Row& row, Attempt attempt) {
+  try {
+    attempt();
+  } catch (const std::bad_alloc&) {
+    row.status = "error: out of memory";
+  } catch (const std::exception& error) {
+    row.status = std::string("error: ") + error.what();
+  }
 }
 
 class SuiteRun {
@@ -88,17 +65,28 @@ class SuiteRun {
       : suite_(suite),
         options_(options),
         make_stage_(make_stage),
+        lock_(options.out),
         file_(results_file(options), options.resume),
         checkpoint_(options.out / "interrupted.jsonl", options.resume) {
-    if (options.resume) finished_ = finished_keys(file_.path());
-    write_text(options.out / "suite.json", suite_as_run().dump(2) + "\n");
-    plan();
+    const auto finished = options.resume ? finished_keys(file_.path()) : std::set<std::string>();
+    write_text(options.out / "suite.json",
+               suite_as_run(suite).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+    places_ = planned_places(suite, options, finished);
+    for (const PlaceToMeasure& place : places_) {
+      result_.resumed += place.finished.size();
+      total_ += place.missing();
+    }
   }
 
   BenchResult run() {
     result_.results = file_.path();
-    for (const PlaceToMeasure& place : places_) run_place(place);
-    report("done");
+    try {
+      for (const PlaceToMeasure& place : places_)
+        if (place.missing() > 0) run_place(place);
+      report("done");
+    } catch (const Error& error) {  // no further row can be written
+      result_.stopped = error.what();
+    }
     return result_;
   }
 
@@ -112,62 +100,6 @@ class SuiteRun {
     return file;
   }
 
-  // The suite with its scenes found and its sizes spelled out, so that it can be run again from this folder.
-  json suite_as_run() const {
-    json scenes = json::array(), sizes = json::array();
-    for (const fs::path& scene : suite_.scenes) scenes.push_back(scene.string());
-    for (const Extent& size : suite_.sizes) sizes.push_back({size.width, size.height});
-    return {{"schema", 1},
-            {"scenes", scenes},
-            {"size", sizes},
-            {"light_scale", suite_.light_scales},
-            {"camera", suite_.camera},
-            {"baseline", suite_.baseline},
-            {"graphs", suite_.graphs_json.empty() ? json(nullptr) : json::parse(suite_.graphs_json)},
-            {"warmup", suite_.warmup},
-            {"repeat", suite_.repeat},
-            {"instrumented", suite_.instrumented},
-            {"seconds", suite_.seconds},
-            {"least", suite_.least},
-            {"frames", suite_.frames},
-            {"fps", suite_.fps},
-            {"images", suite_.images},
-            {"reference", {{"samples", suite_.samples}}}};
-  }
-
-  static bool runs_at(const SuiteConfig& config, const SuitePlace& place) {
-    const auto holds = [](const auto& all, const auto& one) {
-      return std::find(all.begin(), all.end(), one) != all.end();
-    };
-    return holds(config.sizes, place.size) && holds(config.light_scales, place.light_scale);
-  }
-
-  void plan() {
-    size_t index = 0;
-    for (const fs::path& scene : suite_.scenes)
-      for (const double light_scale : all_light_scales(suite_))
-        for (const Extent& size : all_sizes(suite_)) plan_place({scene, size, light_scale}, index);
-  }
-
-  // `index`: of the next row among those of all shards.
-  void plan_place(const SuitePlace& at, size_t& index) {
-    PlaceToMeasure place{at, {}};
-    for (size_t i = 0; i < suite_.configs.size(); ++i) {
-      if (!runs_at(suite_.configs[i], at)) continue;
-      if (index++ % options_.shards != options_.shard - 1) continue;
-      place.configs.push_back(i);
-      if (finished_.count(key_of(at, i)) != 0) place.finished.insert(i);
-    }
-    const size_t missing = place.configs.size() - place.finished.size();
-    result_.resumed += place.finished.size();
-    total_ += missing;
-    if (missing > 0) places_.push_back(std::move(place));
-  }
-
-  std::string key_of(const SuitePlace& place, size_t config) const {
-    return row_of(suite_, options_, place, suite_.configs[config]).key;
-  }
-
   void report(const std::string& note, double part = 0) const {
     if (!options_.progress) return;
     const double share = total_ == 0 ? 1.0 : (double(result_.measured) + part) / double(total_);
@@ -178,7 +110,7 @@ class SuiteRun {
     if (row.status == "ok" && row.nonfinite > 0)
       row.status = fmt::format("error: {} values of the output are not finite", row.nonfinite);
     if (row.status != "ok") ++result_.failed;
-    file_.append(to_json(row));
+    file_.append(row);
     ++result_.measured;
   }
 
@@ -191,67 +123,48 @@ class SuiteRun {
     } catch (const std::exception& error) {
       for (const size_t config : place.configs) {
         if (place.finished.count(config) != 0) continue;
-        Row row = row_of(suite_, options_, place, suite_.configs[config]);
+        Row row = planned_row(suite_, options_, place, suite_.configs[config]);
         row.status = std::string("error: ") + error.what();
         write(row);
       }
       return;
     }
-    for (const Chunk& chunk : chunks_of(place)) run_chunk(place, *stage, chunk);
-  }
-
-  // Techniques with the same baseline are measured together. The baseline itself first, when it is to be
-  // measured. What is finished counts, so that a resumed suite has the same chunks.
-  std::vector<Chunk> chunks_of(const PlaceToMeasure& place) const {
-    std::map<size_t, std::vector<size_t>> groups;
-    for (const size_t config : place.configs) {
-      std::vector<size_t>& group = groups[suite_.configs[config].baseline];
-      group.insert(suite_.configs[config].baseline == config ? group.begin() : group.end(), config);
-    }
-    std::vector<Chunk> chunks;
-    // A sequence that is interrupted begins anew: one technique at a time, so that no more than its row is
-    // lost.
-    const size_t step = suite_.frames > 0 ? 1 : std::max<size_t>(1, options_.max_alive - 1);
-    for (const auto& [baseline, configs] : groups)
-      for (size_t first = 0; first < configs.size(); first += step) {
-        const size_t last = std::min(configs.size(), first + step);
-        chunks.push_back({baseline, {configs.begin() + long(first), configs.begin() + long(last)}});
-      }
-    return chunks;
-  }
-
-  // Of what is measured in turn, in this run or in the one that it resumes.
-  std::string group_of(const SuitePlace& place, const Chunk& chunk) const {
-    json keys = {key_of(place, chunk.baseline)};
-    for (const size_t config : chunk.configs) keys.push_back(key_of(place, config));
-    return canonical_hash(keys);
+    for (const Chunk& chunk : chunks_of(suite_, options_, place)) run_chunk(place, *stage, chunk);
   }
 
   struct Entry {
     size_t config = 0;
     bool wanted = true;  // false: the baseline, there for the ratios only
     Row row;
+    Samples samples;
     std::unique_ptr<Subject> subject;
   };
 
   Entry open(const SuitePlace& place, Stage& stage, size_t config, bool wanted) const {
-    Entry entry{config, wanted, row_of(suite_, options_, place, suite_.configs[config]), nullptr};
+    Entry entry{config, wanted, planned_row(suite_, options_, place, suite_.configs[config]), {}, nullptr};
     const Stopwatch watch;
-    try {
+    or_status(entry.row, [&] {
       entry.subject = stage.open(suite_.configs[config]);
       entry.row.harness_seconds["open"] = watch.seconds();
-    } catch (const std::exception& error) {
-      entry.row.status = std::string("error: ") + error.what();
-    }
+    });
     return entry;
+  }
+
+  RoundSettings rounds() const {
+    RoundSettings settings{suite_.warmup, suite_.repeat, suite_.instrumented};
+    settings.seconds = suite_.seconds;
+    settings.least = suite_.least;
+    settings.sequence = suite_.frames > 0;
+    if (settings.sequence) settings.repeat = suite_.frames;
+    return settings;
   }
 
   void measure(std::vector<Entry>& entries, Stage& stage, const std::string& scene) {
     std::vector<Subject*> subjects;
     std::vector<Entry*> open_entries;
-    RoundSettings settings{suite_.warmup, suite_.repeat, suite_.instrumented};
-    settings.seconds = suite_.seconds;
-    settings.least = suite_.least;
+    RoundSettings settings = rounds();
+    // A sequence cannot be gone on with: what a frame shows depends on those before it.
+    std::vector<Samples> before;
     size_t wanted = 0;
     for (Entry& entry : entries) {
       wanted += entry.wanted ? 1 : 0;
@@ -259,13 +172,8 @@ class SuiteRun {
       if (&entry == &entries.front()) settings.baseline = 0;
       subjects.push_back(entry.subject.get());
       open_entries.push_back(&entry);
+      if (!settings.sequence) before.push_back(checkpoint_.of(entry.row.key));
     }
-    settings.sequence = suite_.frames > 0;
-    if (settings.sequence) settings.repeat = suite_.frames;
-    // A sequence cannot be gone on with: what a frame shows depends on those before it.
-    std::vector<Samples> before;
-    for (const Entry* entry : open_entries)
-      if (!settings.sequence) before.push_back(checkpoint_.of(entry->row.key));
     const auto on_frame = [&](size_t i, TimingMode mode, uint32_t index, const FrameTiming& timing) {
       const Entry& entry = *open_entries[i];
       if (!settings.sequence)
@@ -278,9 +186,11 @@ class SuiteRun {
         subjects, settings, [&](double part) { report(note, part * double(wanted)); }, on_frame,
         std::move(before));
     for (size_t i = 0; i < open_entries.size(); ++i) {
-      open_entries[i]->row.harness_seconds["frames"] = seconds_of(samples[i]);
-      if (!samples[i].error.empty()) open_entries[i]->row.status = "error: " + samples[i].error;
-      open_entries[i]->row.samples = std::move(samples[i]);
+      Entry& entry = *open_entries[i];
+      entry.samples = std::move(samples[i]);
+      entry.row.harness_seconds["frames"] = seconds_of(entry.samples);
+      if (!entry.samples.error.empty()) entry.row.status = "error: " + entry.samples.error;
+      describe_samples(entry.row, entry.samples);
     }
   }
 
@@ -293,12 +203,13 @@ class SuiteRun {
     std::vector<Entry> entries;
     if (missing.front() != chunk.baseline) entries.push_back(open(place, stage, chunk.baseline, false));
     for (const size_t config : missing) {
-      report(fmt::format("{}: {}", scene, label(suite_.configs[config])));
+      report(fmt::format("{}: {}", scene,
+                         label_of(suite_.configs[config].graph.name, suite_.configs[config].set)));
       entries.push_back(open(place, stage, config, true));
     }
-    checkpoint_.begin(group_of(place, chunk));
+    checkpoint_.begin(group_of(suite_, options_, place, chunk));
     measure(entries, stage, scene);
-    const std::vector<double> base_ms = entries.front().row.samples.frame_ms();
+    const std::vector<double> base_ms = entries.front().samples.frame_ms();
     for (Entry& entry : entries) {
       if (!entry.wanted) continue;
       finish(stage, chunk.baseline, base_ms, entry);
@@ -309,36 +220,30 @@ class SuiteRun {
   }
 
   void finish(Stage& stage, size_t baseline, const std::vector<double>& base_ms, Entry& entry) const {
-    if (entry.row.status != "ok" || !entry.subject) return;
-    const std::vector<double> ratios = pair_ratios(entry.row.samples.frame_ms(), base_ms);
-    if (!ratios.empty()) entry.row.ratio = Ratio{label(suite_.configs[baseline]), summarise(ratios)};
+    if (!entry.row.ok() || !entry.subject) return;
+    const SuiteConfig& base = suite_.configs[baseline];
+    entry.row.is_baseline = entry.config == baseline;
+    const std::vector<double> ratios = pair_ratios(entry.samples.frame_ms(), base_ms);
+    if (!ratios.empty()) entry.row.ratio = Ratio{label_of(base.graph.name, base.set), summarise(ratios)};
     const Stopwatch watch;
-    try {
+    or_status(entry.row, [&] {
       stage.finish(suite_.configs[entry.config], *entry.subject, entry.row);
       entry.row.harness_seconds["error"] = watch.seconds();
-    } catch (const std::exception& error) {
-      entry.row.status = std::string("error: ") + error.what();
-    }
+    });
   }
 
   const Suite& suite_;
   const BenchOptions& options_;
   const StageMaker& make_stage_;
+  OutputLock lock_;
   ResultsFile file_;
   Checkpoint checkpoint_;
-  std::set<std::string> finished_;
   std::vector<PlaceToMeasure> places_;
   size_t total_ = 0;
   BenchResult result_;
 };
 
 }  // namespace
-
-std::string label(const SuiteConfig& config) {
-  std::string text = config.graph.name;
-  for (const auto& [name, value] : config.set) text += fmt::format(" {}={}", name, to_string(value));
-  return text;
-}
 
 BenchResult run_suite(const Suite& suite, const BenchOptions& options, const StageMaker& make_stage) {
   return SuiteRun(suite, options, make_stage).run();

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bench/run/rounds.h"
-#include "bench/run/run_json.h"
+#include "bench/run/row.h"
 #include "bench/run/suite.h"
 
 namespace gnomon {
@@ -52,13 +52,12 @@ struct BenchResult {
   size_t measured = 0;  // rows written, failures included
   size_t resumed = 0;   // rows that were there
   size_t failed = 0;    // rows with a status other than "ok"
+  std::string stopped;  // why no further row could be written (full disk, ...); empty: all were
 };
 
-// A technique or scene that fails gives a row whose status says why, and the suite goes on; only what makes
-// every further row impossible (full disk, bad options) is an Error.
+// A technique or scene that fails gives a row whose status says why, and the suite goes on; what makes every
+// further row impossible ends it (BenchResult::stopped). Error: it cannot begin: bad options, there are rows
+// already, another process writes them.
 BenchResult run_suite(const Suite& suite, const BenchOptions& options, const StageMaker& make_stage);
-
-// "shadow_mapping" or "shadow_mapping shadow_map=512": name and what the suite sets.
-std::string label(const SuiteConfig& config);
 
 }  // namespace gnomon

@@ -1,3 +1,4 @@
+// Shows how far long work is: a bar on a terminal, plain lines elsewhere.
 #include "bench/run/progress.h"
 
 #include <fmt/format.h>
@@ -6,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+
+#include "engine/base/printable.h"
 
 namespace gnomon {
 namespace {
@@ -52,7 +55,7 @@ std::string Progress::text(const std::string& note) const {
 
 void Progress::draw(const std::string& note) {
   if (!terminal_) {
-    fmt::print(stream_, "{}: {}\n", what_, text(note));
+    fmt::print(stream_, "{}\n", printable(what_ + ": " + text(note)));
     std::fflush(stream_);
     return;
   }
@@ -60,6 +63,7 @@ void Progress::draw(const std::string& note) {
   const auto full = static_cast<size_t>(fraction_ * cells);
   std::string line =
       fmt::format("{} [{}{}] {}", what_, std::string(full, '#'), std::string(cells - full, '.'), text(note));
+  line = printable(line);
   line.resize(std::min(line.size(), terminal_width(stream_) - 1));
   fmt::print(stream_, "\r\x1b[K{}", line);
   std::fflush(stream_);
@@ -77,7 +81,7 @@ void Progress::update(double fraction, const std::string& note) {
 
 void Progress::say(const std::string& line) {
   if (terminal_ && drawn_) fmt::print(stream_, "\r\x1b[K");
-  fmt::print(stream_, "{}\n", line);
+  fmt::print(stream_, "{}\n", printable(line));
   std::fflush(stream_);
 }
 

@@ -1,3 +1,4 @@
+// Appends rows to results.jsonl and reads them back.
 #include "bench/run/results.h"
 
 #include <fcntl.h>
@@ -31,28 +32,46 @@ size_t whole_length(const std::string& text) {
   return last == std::string::npos ? 0 : last + 1;
 }
 
-}  // namespace
+struct Numbered {
+  json object;
+  size_t number = 0;  // from 1
+};
 
-std::vector<json> read_results(const fs::path& file) {
+std::vector<Numbered> numbered_lines(const fs::path& file) {
   const std::string text = read_whole(file);
   std::istringstream lines(text.substr(0, whole_length(text)));
-  std::vector<json> rows;
+  std::vector<Numbered> all;
   std::map<std::string, size_t> by_key;
   std::string line;
   for (size_t number = 1; std::getline(lines, line); ++number) {
     if (line.empty()) continue;
-    json row = parse_json(line, file.string(), number);
-    if (!row.is_object()) fail("not a JSON object", file.string(), fmt::format("line {}", number));
-    const std::string key =
-        row.contains("key") && row["key"].is_string() ? row["key"].get<std::string>() : "";
-    const auto known = by_key.find(key);
-    if (!key.empty() && known != by_key.end()) {
-      rows[known->second] = std::move(row);
+    json object = parse_json(line, file.string(), number);
+    if (!object.is_object()) fail("not a JSON object", file.string(), fmt::format("line {}", number));
+    const auto key = object.find("key");
+    const bool named = key != object.end() && key->is_string() && !key->get_ref<const std::string&>().empty();
+    const auto known = named ? by_key.find(key->get<std::string>()) : by_key.end();
+    if (known != by_key.end()) {
+      all[known->second] = {std::move(object), number};
     } else {
-      by_key[key] = rows.size();
-      rows.push_back(std::move(row));
+      if (named) by_key[key->get<std::string>()] = all.size();
+      all.push_back({std::move(object), number});
     }
   }
+  return all;
+}
+
+}  // namespace
+
+std::vector<json> read_lines(const fs::path& file) {
+  std::vector<json> objects;
+  for (Numbered& line : numbered_lines(file)) objects.push_back(std::move(line.object));
+  return objects;
+}
+
+std::vector<Row> read_results(const fs::path& file) {
+  std::vector<Row> rows;
+  for (const Numbered& line : numbered_lines(file))
+    rows.push_back(row_from(line.object, file.string(), fmt::format("line {}", line.number)));
   return rows;
 }
 
@@ -76,8 +95,10 @@ ResultsFile::~ResultsFile() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-void ResultsFile::append(const json& row) {
-  const std::string line = row.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
+void ResultsFile::append(const Row& row) { append(to_json(row)); }
+
+void ResultsFile::append(const json& object) {
+  const std::string line = object.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
   const off_t before = lseek(descriptor_, 0, SEEK_END);
   size_t written = 0;
   while (written < line.size()) {

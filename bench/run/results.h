@@ -5,14 +5,19 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "bench/run/row.h"
+
 namespace gnomon {
 
-// All whole rows, in order; a torn last line (an interrupted run) is left out. Of rows with the same "key"
-// only the last one is kept, at the place of the first. Error: no such file, or a line that is not a JSON
-// object.
-std::vector<nlohmann::json> read_results(const std::filesystem::path& file);
+// All whole lines of a file of JSON objects, in order; a torn last line (an interrupted run) is left out. Of
+// rows with the same "key" only the last one is kept, at the place of the first. Error: no such file, or a
+// line that is not a JSON object.
+std::vector<nlohmann::json> read_lines(const std::filesystem::path& file);
+// The same of rows. Error: a line that is no row, too.
+std::vector<Row> read_results(const std::filesystem::path& file);
 
-// Appends rows. A row is on disk when append() returns; a row that could not be written whole is taken back.
+// Appends lines. A line is on disk when append() returns; a line that could not be written whole is taken
+// back.
 class ResultsFile {
  public:
   // Makes the folder. `go_on`: keeps what is there, less a torn last line; otherwise the file must be new or
@@ -22,7 +27,8 @@ class ResultsFile {
   ResultsFile(const ResultsFile&) = delete;
   ResultsFile& operator=(const ResultsFile&) = delete;
 
-  void append(const nlohmann::json& row);  // Error: full disk, ...
+  void append(const nlohmann::json& object);  // Error: full disk, ...
+  void append(const Row& row);                // Error: full disk, ...
   const std::filesystem::path& path() const { return file_; }
 
  private:

@@ -1,3 +1,4 @@
+// Measures several techniques in turn, frame by frame.
 #include "bench/run/rounds.h"
 
 #include <utility>

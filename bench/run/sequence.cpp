@@ -1,17 +1,15 @@
+// Measures a sequence of frames: each frame's error, and the flicker from frame to frame.
 #include "bench/run/sequence.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "engine/scene/animation.h"
 
 namespace gnomon {
 namespace {
-
-using nlohmann::json;
 
 constexpr double plane_tolerance = 1e-3;    // of the view depth
 constexpr double normal_tolerance = 0.906;  // cosine of 25 degrees
@@ -25,10 +23,10 @@ std::optional<uint32_t> pixel_of(const Camera& camera, const glm::dvec3& relativ
                                  uint32_t height) {
   const glm::dvec3 p = glm::transpose(glm::dmat3(camera.world_from_camera)) * relative;
   if (!(-p.z > 0)) return std::nullopt;
-  const double half_height = std::tan(0.5 * camera.fov_y),
-               half_width = half_height * camera.aspect.value_or(double(width) / height);
+  const double aspect = double(width) / height, half = half_extent(camera, aspect).y,
+               half_width = half * aspect;
   const double x = std::floor((0.5 + 0.5 * p.x / (-p.z * half_width)) * width),
-               y = std::floor((0.5 - 0.5 * p.y / (-p.z * half_height)) * height);
+               y = std::floor((0.5 - 0.5 * p.y / (-p.z * half)) * height);
   if (!(x >= 0 && y >= 0 && x < width && y < height)) return std::nullopt;
   return static_cast<uint32_t>(y) * width + static_cast<uint32_t>(x);
 }
@@ -47,11 +45,6 @@ std::optional<Spread> spread_of(const std::vector<FrameResult>& frames, Figure f
   if (count == 0) return std::nullopt;
   spread.mean /= static_cast<double>(count);
   return spread;
-}
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(); }
-json to_json(const std::optional<Spread>& spread) {
-  return spread ? json{{"mean", number(spread->mean)}, {"max", number(spread->max)}} : json();
 }
 
 }  // namespace
@@ -111,7 +104,7 @@ FrameTruth SequenceTruth::make(uint32_t frame, const FrameTruth* before) const {
 
 void SequenceResult::add(const FrameTruth& truth, double frame_ms, const Image& visibility) {
   const Reference& reference = *truth.reference;
-  FrameResult frame{truth.seconds, frame_ms, measure_visibility(visibility, reference), {}};
+  FrameResult frame{truth.seconds, frame_ms, measure_visibility(visibility, reference)};
   if (reference_ != nullptr && !truth.before.empty()) {
     double sum = 0;
     size_t count = 0;
@@ -122,14 +115,14 @@ void SequenceResult::add(const FrameTruth& truth, double frame_ms, const Image& 
           {shown_.plane(name), reference_->visibility[light], reference_->domain[light]}, truth.before);
       if (change) sum += *change, ++count;
     }
-    if (count > 0) frame.flicker = sum / static_cast<double>(count);
+    if (count > 0) frame.error->flicker = sum / static_cast<double>(count);
   }
   frames_.push_back(std::move(frame));
   shown_ = visibility;
   reference_ = truth.reference;
 }
 
-void SequenceResult::add(double seconds, double frame_ms) { frames_.push_back({seconds, frame_ms, {}, {}}); }
+void SequenceResult::add(double seconds, double frame_ms) { frames_.push_back({seconds, frame_ms, {}}); }
 
 std::optional<Spread> SequenceResult::rmse() const {
   return spread_of(frames_, [](const FrameResult& f) {
@@ -138,22 +131,7 @@ std::optional<Spread> SequenceResult::rmse() const {
   });
 }
 std::optional<Spread> SequenceResult::flicker() const {
-  return spread_of(frames_, [](const FrameResult& f) { return f.flicker; });
-}
-
-json to_json(const SequenceResult& result) {
-  json frames = json::array();
-  for (const FrameResult& frame : result.frames()) {
-    json row = {{"time", frame.seconds}, {"frame_ms", frame.frame_ms}};
-    if (frame.error) row["error"] = to_json(*frame.error);
-    if (frame.flicker) row["error"]["flicker"] = number(*frame.flicker);
-    frames.push_back(std::move(row));
-  }
-  const auto flicker = result.flicker();
-  return {{"frames", frames},
-          {"sequence",
-           {{"frames", frames.size()}, {"rmse", to_json(result.rmse())}, {"flicker", to_json(flicker)}}},
-          {"flicker", flicker ? number(flicker->mean) : json()}};
+  return spread_of(frames_, [](const FrameResult& f) { return f.error ? f.error->flicker : std::nullopt; });
 }
 
 }  // namespace gnomon

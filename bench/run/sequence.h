@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,8 +50,9 @@ class SequenceTruth {
 
 struct FrameResult {
   double seconds = 0, frame_ms = 0;
-  std::optional<MeasuredError> error;  // without acne, leak and FLIP; absent: not measured
-  std::optional<double> flicker;  // mean over the lights; absent in frame 0 and without pixels seen twice
+  // Without acne, leak and FLIP; absent: not measured. Flicker is absent in frame 0 and without pixels seen
+  // twice.
+  std::optional<MeasuredError> error;
 };
 
 // Mean and largest over a sequence's frames that have the figure; NaN when any is NaN.
@@ -75,9 +75,5 @@ class SequenceResult {
   Image shown_;                                 // the last frame's visibility
   std::shared_ptr<const Reference> reference_;  // and its truth
 };
-
-// {"frames": [{time, frame_ms, error {..., flicker}}], "sequence": {frames, rmse {mean, max}, flicker {...}},
-// "flicker": the mean}: members of a result row.
-nlohmann::json to_json(const SequenceResult& result);
 
 }  // namespace gnomon

@@ -1,3 +1,4 @@
+// The harness' stage on a Vulkan device: renderers and references of one scene and size.
 #include "bench/run/stage.h"
 
 #include <fmt/format.h>
@@ -62,14 +63,15 @@ class DeviceStage final : public Stage {
  public:
   // `truth`: of the frame whose error is the row's.
   DeviceStage(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene,
-              const RenderSettings& settings, Truth truth, Sequence sequence, uint32_t repeat,
+              const RenderSettings& settings, Truth truth, Sequence sequence, const Suite& suite,
               fs::path images_of)
       : device_(std::move(device)),
         scene_(std::move(scene)),
         settings_(settings),
         truth_(std::move(truth)),
         sequence_(std::move(sequence)),
-        repeat_(repeat),
+        repeat_(suite.repeat),
+        samples_(suite.samples),
         images_of_(std::move(images_of)) {}
 
   std::unique_ptr<Subject> open(const SuiteConfig& config) override {
@@ -93,14 +95,14 @@ class DeviceStage final : public Stage {
     describe_renderer(row, subject.renderer());
     for (const std::string& message : scene_->warnings.messages) row.warnings.push_back(message);
     if (sequence_.frames > 0)
-      row.sequence = std::move(subject.sequence);
+      describe_sequence(row, subject.sequence);
     else
       show_still(config, subject);
     const auto& shown = subject.shown();
     row.nonfinite = shown.nonfinite;
     const bool finite_color = shown.color && count_nonfinite(*shown.color) == 0;
-    row.error_json =
-        truth_.error_json(shown.visibility, finite_color ? &*shown.color : nullptr, config.graph.vars);
+    row.error = truth_.error(shown.visibility, finite_color ? &*shown.color : nullptr, config.graph);
+    row.reference = RowReference{samples_};
     if (!images_of_.empty())
       row.images =
           write_row_images(images_of_, row, truth_, shown.visibility, shown.color ? &*shown.color : nullptr);
@@ -124,6 +126,7 @@ class DeviceStage final : public Stage {
   Truth truth_;
   Sequence sequence_;
   uint32_t repeat_;     // frames after which a technique with history is measured
+  uint32_t samples_;    // of the reference
   fs::path images_of_;  // folder of results.jsonl; empty: no images
 };
 
@@ -156,7 +159,7 @@ StageMaker device_stages(const std::shared_ptr<Device>& device, const fs::path& 
         last > 0 && scene->animation ? std::make_shared<const Scene>(posed(*scene, last)) : scene;
     return std::make_unique<DeviceStage>(
         device, scene, settings, Truth(shown, reference, cache),
-        Sequence{suite.frames, SequenceTruth(scene, reference, cache, settings.frame_seconds)}, suite.repeat,
+        Sequence{suite.frames, SequenceTruth(scene, reference, cache, settings.frame_seconds)}, suite,
         suite.images ? out : fs::path());
   };
 }

@@ -1,3 +1,4 @@
+// Median, deviation and confidence interval of repeated timings.
 #include "bench/run/statistics.h"
 
 #include <algorithm>

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -39,8 +41,8 @@ struct Suite {
   uint32_t samples = 0;                 // of the reference; 0: hard shadows of the lights' centres
   uint64_t memory = uint64_t{1} << 30;  // bytes: RenderSettings::memory; not in the file
   bool images = false;                  // write PNGs of every row beside the results
-  std::string graphs_json;              // "graphs" as written
-  std::vector<std::string> notices;     // scenes that are not there, one sentence each
+  std::shared_ptr<const nlohmann::json> graphs;  // "graphs" as written; null: made otherwise
+  std::vector<std::string> notices;              // scenes that are not there, one sentence each
 };
 
 // Every size at which some graph is measured, each once: the suite's first.

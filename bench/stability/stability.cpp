@@ -10,10 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/error/measure.h"
-#include "bench/run/run_json.h"
+#include "bench/run/row.h"
 #include "engine/base/config.h"
 #include "engine/base/error.h"
 #include "engine/render/renderer.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 
@@ -41,6 +42,7 @@ constexpr uint64_t most_reference_pixels = uint64_t{1} << 21;  // larger images 
 constexpr uint64_t most_reference_rays = uint64_t{1} << 24;    // fewer samples of the light in large images
 constexpr uint32_t fewest_samples = 16;
 constexpr uint64_t most_edge_pixels = uint64_t{1} << 16;  // acne and leak cost hundreds of rays a pixel
+constexpr uint32_t usual_map_side = 1024;                 // texels: of techniques without a map
 constexpr uint32_t frames_of_history = 4;  // rendered before a technique with history is judged
 
 const StabilityAxis& axis_of(const std::string& name) {
@@ -58,35 +60,30 @@ struct Stage {
   bool applies = true;
 };
 
-void apply_variables(const StabilityAxis& axis, const std::string& value, const Values& known, Stage& stage) {
+void apply_variables(const StabilityAxis& axis, const std::string& value, const Graph& graph, Stage& stage) {
+  const Values& known = graph.vars;
+  std::vector<std::string> variables = axis.variables;
+  if (axis.map_side) variables = map_side_variables(graph);
   bool any = false;
-  for (const std::string& name : axis.variables)
+  for (const std::string& name : variables)
     if (known.contains(name)) stage.set.insert_or_assign(name, parse_value(value)), any = true;
   for (const auto& [name, with] : axis.with)
     if (known.contains(name)) stage.set.insert_or_assign(name, with);
-  if (!axis.variables.empty() && !any) stage.applies = false;
+  if ((axis.map_side || !axis.variables.empty()) && !any) stage.applies = false;
 }
 
-Stage stage_of(const StabilityCase& test, const Values& known, const StabilityOptions& options) {
+Stage stage_of(const StabilityCase& test, const Graph& graph, const StabilityOptions& options) {
   Stage stage;
   stage.size = options.size();
-  if (known.contains("shadow_map")) stage.set["shadow_map"] = options.shadow_map();
+  for (const std::string& name : map_side_variables(graph)) stage.set[name] = options.shadow_map();
   for (const auto& [name, value] : test) {
     const StabilityAxis& axis = axis_of(name);
-    apply_variables(axis, value, known, stage);
+    apply_variables(axis, value, graph, stage);
     if (!axis.apply) continue;
     axis.apply(stage.setup, stage.size, value);
     stage.scene_key.append(name).append("=").append(value).append(",");
   }
   return stage;
-}
-
-bool has_history(const std::vector<GraphNode>& nodes) {
-  return std::any_of(nodes.begin(), nodes.end(), [](const GraphNode& node) {
-    const bool reads =
-        std::any_of(node.in.begin(), node.in.end(), [](const auto& in) { return in.second.previous; });
-    return reads || has_history(node.body);
-  });
 }
 
 struct Frame {
@@ -96,7 +93,7 @@ struct Frame {
 
 Frame render(Renderer& renderer, const Graph& graph) {
   renderer.play();
-  const uint32_t frames = has_history(graph.nodes) ? frames_of_history : 1;
+  const uint32_t frames = reads_history(graph) ? frames_of_history : 1;
   for (uint32_t i = 0; i < frames; ++i) renderer.render(TimingMode::none);
   Frame frame{renderer.read("visibility"), {}};
   if (graph.outputs.contains("color")) frame.color = renderer.read("color");
@@ -151,16 +148,10 @@ double constant_rmse(const Reference& reference) {
   return lights > 0 ? sum / lights : 0;
 }
 
-uint32_t map_size(const Graph& graph) {
-  const auto found = graph.vars.find("shadow_map");
-  const auto* texels = found == graph.vars.end() ? nullptr : std::get_if<std::int64_t>(&found->second);
-  return texels != nullptr && *texels > 0 ? static_cast<uint32_t>(*texels) : 1024;
-}
-
 void measure_error(const Image& visibility, const Graph& graph, const StabilityTruth& truth,
                    StabilityMeasurement& m) {
   const Reference& reference = truth.reference;
-  EdgeSettings edges{&truth.tracer, truth.scene->cameras.front(), map_size(graph)};
+  EdgeSettings edges{&truth.tracer, truth.scene->cameras.front(), map_side(graph).value_or(usual_map_side)};
   std::vector<std::vector<uint32_t>> deep;
   if (uint64_t(reference.width) * reference.height > most_edge_pixels)
     edges.tracer = nullptr;
@@ -206,7 +197,7 @@ StabilityMeasurement measure_stability(const std::shared_ptr<Device>& device, co
                                        const StabilityCase& test, bool area, const StabilityOptions& options,
                                        StabilityReferences& references) {
   StabilityMeasurement m;
-  const Stage stage = stage_of(test, load_graph(graph).vars, options);
+  const Stage stage = stage_of(test, load_graph(graph), options);
   if (!stage.applies) {
     m.ran = Ran::not_applicable;
     return m;
@@ -233,7 +224,7 @@ StabilityMeasurement measure_stability(const std::shared_ptr<Device>& device, co
 
 bool follows_light_size(const std::shared_ptr<Device>& device, const fs::path& graph,
                         const StabilityOptions& options) {
-  const Stage stage = stage_of({}, load_graph(graph).vars, options);
+  const Stage stage = stage_of({}, load_graph(graph), options);
   const Graph loaded = load_graph(graph, stage.set);
   const auto visibility = [&](double light_size) {
     StabilitySetup setup = stage.setup;

@@ -33,7 +33,8 @@ struct StabilityAxis {
       variables;  // of the graph, set to the value; the axis is for graphs that have one of them
   Values with;    // set beside them, where the graph has such variables
   std::function<void(StabilitySetup&, Extent&, const std::string&)>
-      apply;  // of the scene or the output; may be empty
+      apply;              // of the scene or the output; may be empty
+  bool map_side = false;  // the variables are those that set the side of the graph's maps, too
 };
 const std::vector<StabilityAxis>& stability_axes();
 

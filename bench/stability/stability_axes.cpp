@@ -53,6 +53,18 @@ StabilityAxis variable_axis(std::string name, std::string unit, std::string help
           std::move(quick), std::move(variables), std::move(with), {}};
 }
 
+StabilityAxis size_axis() {
+  return {"size",
+          "pixels",
+          "of the output, odd and prime sizes among them",
+          {"128x128", "97x61", "31x17", "7x5", "96x1", "1x96", "2x2", "1x1", "1021x509", "1920x1080",
+           "7680x4320"},
+          {"31x17", "1x1"},
+          {},
+          {},
+          [](StabilitySetup&, Extent& size, const std::string& text) { size = extent_of("size", text); }};
+}
+
 std::vector<StabilityAxis> make_axes() {
   using S = StabilitySetup;
   std::vector<StabilityAxis> axes;
@@ -78,17 +90,9 @@ std::vector<StabilityAxis> make_axes() {
                             {"10", "1", "90", "120", "150", "170"}, {"1", "170"}, &S::fov, 1e-3, 179.9));
   axes.push_back(variable_axis("shadow_map", "texels", "side of the shadow map",
                                {"4096", "128", "64", "32", "16", "8", "4", "3", "2", "1", "16384"},
-                               {"1", "2"}, {"shadow_map"}));
-  axes.push_back(
-      {"size",
-       "pixels",
-       "of the output, odd and prime sizes among them",
-       {"128x128", "97x61", "31x17", "7x5", "96x1", "1x96", "2x2", "1x1", "1021x509", "1920x1080",
-        "7680x4320"},
-       {"31x17", "1x1"},
-       {},
-       {},
-       [](StabilitySetup&, Extent& size, const std::string& text) { size = extent_of("size", text); }});
+                               {"1", "2"}, {}));
+  axes.back().map_side = true;
+  axes.push_back(size_axis());
   axes.push_back(variable_axis("kernel", "texels or pixels", "width of the filter",
                                {"1", "3", "31", "63", "127", "255"}, {"1", "127"}, {"kernel", "filter"}));
   axes.push_back(variable_axis("penumbra", "1", "penumbra's width / scene size",

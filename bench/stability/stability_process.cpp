@@ -1,3 +1,4 @@
+// Runs work in a process of its own, so that a crash of the driver ends that process alone.
 #include "bench/stability/stability_process.h"
 
 #include <fmt/format.h>

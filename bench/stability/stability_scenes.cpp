@@ -1,3 +1,4 @@
+// Builds the scene that the stability walk bends, axis by axis.
 #include "bench/stability/stability_scenes.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// Reads JSON files with comments; every error has a file and a place.
 #include "engine/base/config.h"
 
 #include <charconv>

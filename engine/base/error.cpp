@@ -1,3 +1,4 @@
+// The text of an Error: a line per problem.
 #include "engine/base/error.h"
 
 #include <algorithm>

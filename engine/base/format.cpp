@@ -1,3 +1,4 @@
+// Sizes, names and kinds of image formats.
 #include "engine/base/format.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Parses JSON with comments; duplicate keys and syntax errors are reported with their place.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>

@@ -1,3 +1,4 @@
+// JSON pointers, and JSON values as they appear in messages.
 #include "engine/base/json_text.h"
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// Resolves a pass' parameters from their declaration and the given values, and notes which are read.
 #include "engine/base/params.h"
 
 #include <algorithm>

@@ -21,11 +21,12 @@ enum class ParamType { flag, integer, number, choice };
 struct ParamSpec {
   std::string name;
   ParamType type = ParamType::number;
-  Value standard;                    // the default
+  Value default_value;
   double min = 0, max = 0;           // inclusive range of integers and numbers
   std::vector<std::string> choices;  // of a choice, in order; the index is the value GLSL sees
   std::string unit;                  // "texels", "world units", "1" for a plain ratio, ...
   std::string help;
+  std::string from = {};  // the input whose traits say the value; empty: a graph file does
 };
 
 // The values of one pass instance, complete (defaults filled in) and in range. Look-ups are remembered, so

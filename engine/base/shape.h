@@ -22,9 +22,10 @@ struct ImageShape {
 };
 
 struct BufferShape {
-  uint64_t count = 1;         // elements
-  uint32_t stride = 4;        // bytes an element, std430
-  std::string glsl = "uint";  // GLSL type of an element: a basic type, or a struct of shaders/glsl/lib
+  uint64_t count = 1;          // elements
+  uint32_t stride = 4;         // bytes an element, std430
+  std::string glsl = "uint";   // GLSL type of an element: a basic type, or a struct
+  std::string glsl_file = {};  // that defines the struct, relative to shaders/glsl
   bool operator==(const BufferShape&) const = default;
 };
 

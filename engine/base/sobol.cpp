@@ -1,3 +1,4 @@
+// The 2D Sobol sequence and its Owen scrambling.
 #include "engine/base/sobol.h"
 
 namespace gnomon {

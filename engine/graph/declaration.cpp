@@ -1,3 +1,4 @@
+// Collects what a pass declares: its ports and parameters.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -175,8 +176,11 @@ void Declaration::refuse(std::string_view name, std::string_view must_be) {
 ImageShape Declaration::input(std::string name, Access access, bool array, std::string help) {
   check_new(ports_, name, "port");
   Port port = make_port(std::move(name), Direction::in, access, false, array, std::move(help));
-  if (const Connected* connected = lookup(inputs_, port.name))
+  if (const Connected* connected = lookup(inputs_, port.name)) {
     port.image = connected->image.value_or(ImageShape{});
+    port.traits = connected->traits;
+    port.behind = connected->behind;
+  }
   ports_.push_back(std::move(port));
   return ports_.back().image;
 }
@@ -200,6 +204,7 @@ void Declaration::output(std::string name, Access access, bool array, ImageShape
   check_new(ports_, name, "port");
   ports_.push_back(make_port(std::move(name), Direction::out, access, false, array, std::move(help)));
   ports_.back().image = shape;
+  if (const Offers* offered = lookup(offers_, ports_.back().name)) ports_.back().behind = *offered;
 }
 
 void Declaration::transient(std::string name, Access access, bool array, ImageShape shape, std::string help) {
@@ -222,11 +227,23 @@ void Declaration::reads_around(std::string_view input, uint32_t texels, std::str
     if (port.name == input) port.reach = texels, port.reach_through = through;
 }
 
+void Declaration::offer_behind(std::string_view input, std::string_view output) {
+  const Connected* connected = lookup(inputs_, input);
+  if (!connected) return;
+  Offers& offered = offers_[std::string(output)];
+  offered.insert(connected->behind.begin(), connected->behind.end());
+  if (connected->buffer) offered[std::string(input)] = {connected->node, connected->port, *connected->buffer};
+  for (Port& port : ports_)
+    if (port.name == output) port.behind = offered;
+}
+
 BufferShape Declaration::input_buffer(std::string name, Access access, std::string help) {
   check_new(ports_, name, "port");
   Port port = make_port(std::move(name), Direction::in, access, true, false, std::move(help));
-  if (const Connected* connected = lookup(inputs_, port.name))
+  if (const Connected* connected = lookup(inputs_, port.name)) {
     port.buffer = connected->buffer.value_or(BufferShape{});
+    port.traits = connected->traits;
+  }
   ports_.push_back(std::move(port));
   return ports_.back().buffer;
 }
@@ -240,6 +257,30 @@ std::optional<BufferShape> Declaration::optional_input_buffer(std::string name, 
   port.optional = true;
   if (!present) port.buffer.count = 0;
   return present ? std::optional(port.buffer) : std::nullopt;
+}
+
+BufferShape Declaration::input_behind(std::string name, std::string_view beside, Access access,
+                                      std::string help) {
+  if (!has_name(ports_, beside))
+    fail("a pass asks for '" + name + "' behind '" + std::string(beside) + "', which it does not declare");
+  const Behind* offered = nullptr;
+  if (const Connected* connected = lookup(inputs_, beside)) offered = lookup(connected->behind, name);
+  input_buffer(std::move(name), access, std::move(help));
+  Port& port = ports_.back();
+  port.beside = beside;
+  if (offered) port.buffer = offered->shape;
+  return port.buffer;
+}
+
+std::optional<BufferShape> Declaration::optional_input_behind(std::string name, std::string_view beside,
+                                                              Access access, std::string help) {
+  const Connected* connected = lookup(inputs_, beside);
+  const bool offered = connected && connected->behind.contains(name);
+  input_behind(std::move(name), beside, access, std::move(help));
+  Port& port = ports_.back();
+  port.optional = true;
+  if (!offered) port.buffer.count = 0;
+  return offered ? std::optional(port.buffer) : std::nullopt;
 }
 
 BufferShape Declaration::inout_buffer(std::string name, Access access, std::string help) {
@@ -267,8 +308,12 @@ const Port* Declaration::find(std::string_view port) const {
 
 std::vector<std::string> Declaration::undeclared() const {
   std::vector<std::string> names;
+  const auto settable = [&](const std::string& name) {
+    return std::any_of(specs_.begin(), specs_.end(),
+                       [&](const ParamSpec& spec) { return spec.name == name && spec.from.empty(); });
+  };
   for (const auto& [name, value] : given_)
-    if (!has_name(specs_, name)) names.push_back(name);
+    if (!settable(name)) names.push_back(name);
   return names;
 }
 

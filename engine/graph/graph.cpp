@@ -1,5 +1,7 @@
+// A graph as JSON text.
 #include "engine/graph/graph.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace gnomon {
@@ -14,6 +16,7 @@ json to_json(const Value& value) {
 json to_json(const GraphNode& node) {
   json result{{"id", node.id}, {"type", node.type}};
   for (const auto& [port, ref] : node.in) result["in"][port] = to_string(ref);
+  for (const std::string& id : node.from) result["from"].push_back(id);
   for (const auto& [name, value] : node.params) result["params"][name] = to_json(value);
   if (node.type == "loop") {
     result["controller"] = node.controller;
@@ -24,7 +27,16 @@ json to_json(const GraphNode& node) {
   return result;
 }
 
+bool read_history(const std::vector<GraphNode>& nodes) {
+  return std::any_of(nodes.begin(), nodes.end(), [](const GraphNode& node) {
+    return read_history(node.body) ||
+           std::any_of(node.in.begin(), node.in.end(), [](const auto& in) { return in.second.previous; });
+  });
+}
+
 }  // namespace
+
+bool reads_history(const Graph& graph) { return read_history(graph.nodes); }
 
 std::string to_string(const PortRef& ref) {
   return ref.node + "." + ref.port + (ref.previous ? "@previous" : "");

@@ -25,11 +25,15 @@ std::string to_string(const PortRef& ref);
 struct GraphNode {
   std::string id, type;
   std::map<std::string, PortRef> in;
-  Values params;                // variables already substituted
-  std::string place;            // JSON pointer, for errors
-  std::vector<GraphNode> body;  // of a loop
-  std::string controller;       // of a loop
-  uint32_t max = 0;             // of a loop
+  // Ids of nodes: inputs that `in` does not name read the outputs of the same names of these.
+  std::vector<std::string> from;
+  Values params;                                 // variables already substituted
+  std::map<std::string, std::string> variables;  // of params: the variable whose value it has
+  std::vector<std::string> vars;                 // those params that are named by their variable alone
+  std::string place;                             // JSON pointer, for errors
+  std::vector<GraphNode> body;                   // of a loop
+  std::string controller;                        // of a loop
+  uint32_t max = 0;                              // of a loop
 };
 
 struct Graph {
@@ -39,6 +43,9 @@ struct Graph {
   std::vector<GraphNode> nodes;            // file order
   std::map<std::string, PortRef> outputs;  // "color", "visibility", ...
 };
+
+// Does some pass read what a frame before wrote?
+bool reads_history(const Graph& graph);
 
 // Reads and checks a graph file: syntax, schema, variables, pass types, ports, parameters, cycles. All
 // problems at once, each with its JSON pointer. `set` overrides variables; an unknown one is an error.

@@ -1,3 +1,5 @@
+// Reads a graph file and puts in the values of its variables.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +16,13 @@ namespace gnomon {
 namespace {
 
 using nlohmann::json;
+
+// "name" of "$name"; nothing for any other value.
+std::optional<std::string> variable_in(const json& value) {
+  const auto* text = value.get_ptr<const std::string*>();
+  if (!text || text->empty() || text->front() != '$') return std::nullopt;
+  return text->substr(1);
+}
 
 // "$name" -> the variable's value; knows which variables are used.
 class Variables {
@@ -37,10 +46,9 @@ class Variables {
 
   // nullopt, and a problem: no such variable.
   std::optional<Value> resolve(const json& value, const std::string& place) {
-    if (!value.is_string()) return to_value(value, file_, place, problems_);
-    const auto& text = value.get_ref<const std::string&>();
-    if (text.empty() || text[0] != '$') return text;
-    const std::string name = text.substr(1);
+    const auto variable = variable_in(value);
+    if (!variable) return to_value(value, file_, place, problems_);
+    const std::string& name = *variable;
     used_.insert(name);
     const auto found = values_.find(name);
     if (found != values_.end()) return found->second;
@@ -136,7 +144,9 @@ class Loader {
       result.body = nodes(required(reader, "passes", body), body);
     } else {
       result.in = refs(reader.find("in"), pointer_to(place, "in"));
-      result.params = params(reader.find("params"), pointer_to(place, "params"));
+      result.from = names(reader.find("from"), pointer_to(place, "from"));
+      add_params(reader.find("params"), pointer_to(place, "params"), result);
+      add_variables(reader.find("vars"), pointer_to(place, "vars"), result);
     }
     reader.finish();
     return result;
@@ -145,27 +155,58 @@ class Loader {
   uint32_t max_turns(const json* value, const std::string& place) {
     constexpr int64_t most = 65536;
     if (!value) return 1;
-    const std::optional<Value> turns = vars_.resolve(*value, place);
-    if (!turns) return 1;
-    const auto* integer = std::get_if<int64_t>(&*turns);
-    const auto* number = std::get_if<double>(&*turns);
+    const std::optional<Value> iterations = vars_.resolve(*value, place);
+    if (!iterations) return 1;
+    const auto* integer = std::get_if<int64_t>(&*iterations);
+    const auto* number = std::get_if<double>(&*iterations);
     const double count = integer ? double(*integer) : number ? *number : 0;
     if (count >= 1 && count <= double(most) && std::trunc(count) == count) return uint32_t(count);
     problems_.add(
-        "'max' is " + shown(*value) + ": must be an integer in 1.." + std::to_string(most) + " turns", file_,
-        place);
+        "'max' is " + shown(*value) + ": must be an integer in 1.." + std::to_string(most) + " iterations",
+        file_, place);
     return 1;
   }
 
-  Values params(const json* object, const std::string& place) {
-    Values result;
-    if (!object) return result;
-    if (!object->is_object()) {
-      problems_.add("is " + shown(*object) + ": must be an object", file_, place);
-      return result;
+  void add_params(const json* object, const std::string& place, GraphNode& node) {
+    if (!object) return;
+    if (!object->is_object())
+      return problems_.add("is " + shown(*object) + ": must be an object", file_, place);
+    for (const auto& [name, value] : object->items()) {
+      auto resolved = vars_.resolve(value, pointer_to(place, name));
+      if (!resolved) continue;
+      node.params[name] = *std::move(resolved);
+      if (const auto variable = variable_in(value)) node.variables[name] = *variable;
     }
-    for (const auto& [name, value] : object->items())
-      if (auto resolved = vars_.resolve(value, pointer_to(place, name))) result[name] = *std::move(resolved);
+  }
+
+  // Parameters that are the variables of the same names.
+  void add_variables(const json* list, const std::string& place, GraphNode& node) {
+    for (const std::string& name : names(list, place)) {
+      auto resolved = vars_.resolve("$" + name, place);
+      if (!resolved) continue;
+      if (node.params.contains(name))
+        problems_.add("parameter " + in_quotes(name) + " is set twice", file_, place,
+                      "name it under \"params\" or under \"vars\"");
+      node.params[name] = *std::move(resolved);
+      node.variables[name] = name;
+      node.vars.push_back(name);
+    }
+  }
+
+  // A name, or a list of names; none twice.
+  std::vector<std::string> names(const json* value, const std::string& place) {
+    if (!value) return {};
+    std::vector<std::string> result;
+    const json list = value->is_array() ? *value : json::array({*value});
+    for (const json& name : list) {
+      if (!name.is_string()) {
+        problems_.add("is " + shown(name) + ": must be a name", file_, place, "or a list of names");
+      } else if (std::find(result.begin(), result.end(), name.get<std::string>()) != result.end()) {
+        problems_.add("names " + in_quotes(name.get<std::string>()) + " twice", file_, place);
+      } else {
+        result.push_back(name.get<std::string>());
+      }
+    }
     return result;
   }
 

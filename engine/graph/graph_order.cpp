@@ -1,3 +1,4 @@
+// Orders a graph's nodes stably, each loop in one piece.
 #include "engine/graph/graph_order.h"
 
 #include <algorithm>

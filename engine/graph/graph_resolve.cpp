@@ -1,14 +1,14 @@
+// Makes, declares, connects and orders a graph's passes.
 #include "engine/graph/graph_resolve.h"
 
 #include <algorithm>
 #include <cctype>
-#include <exception>
 #include <numeric>
 #include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/json_text.h"
-#include "engine/graph/graph_order.h"
+#include "engine/graph/graph_resolve_parts.h"
 
 namespace gnomon {
 namespace {
@@ -28,9 +28,7 @@ class Resolver {
     for (ResolvedLoop& loop : result_.loops) find_controller(loop);
     for (ResolvedNode& node : result_.nodes) connect(node);
     if (declare_in_order()) {
-      collect_users();
-      check_modifiers();
-      order_with_modifiers();
+      find_users(result_, complaints_);
     }
     check_outputs();
     return std::move(result_);
@@ -63,10 +61,10 @@ class Resolver {
   }
 
   // Whoever read the file has complained about what is missing.
-  bool told_missing(const std::string& text) const { return text.empty() && !problems_.empty(); }
+  bool reported_missing(const std::string& text) const { return text.empty() && !problems_.empty(); }
 
   void check_id(const GraphNode& node) {
-    if (told_missing(node.id)) return;
+    if (reported_missing(node.id)) return;
     if (!is_identifier(node.id))
       problem("id " + in_quotes(node.id) + " is not a name", pointer_to(node.place, "id"),
               "letters, digits, '_' and '-'");
@@ -83,7 +81,7 @@ class Resolver {
     if (!resolved.pass) {
       resolved.sound = false;
     }
-    if (!resolved.pass && !told_missing(node.type)) {
+    if (!resolved.pass && !reported_missing(node.type)) {
       std::vector<std::string> types = PassRegistry::instance().types();
       types.push_back("loop");
       problem("unknown pass type " + in_quotes(node.type), pointer_to(node.place, "type"),
@@ -100,28 +98,35 @@ class Resolver {
       if (body.back() == loop.node->controller) loop.controller = i;
     }
     const std::string& name = loop.node->controller;
-    if (!told_missing(name) && std::find(body.begin(), body.end(), name) == body.end())
+    if (!reported_missing(name) && std::find(body.begin(), body.end(), name) == body.end())
       problem("controller " + in_quotes(name) + " is not a pass of the loop's body",
               pointer_to(loop.node->place, "controller"), did_you_mean(name, body));
   }
 
   // --- connect ---
-  const uint32_t* find_node(const PortRef& ref, const std::string& place) {
-    const auto found = result_.index.find(ref.node);
+  const uint32_t* find_node(const std::string& id, const std::string& place) {
+    const auto found = result_.index.find(id);
     if (found != result_.index.end()) return &found->second;
-    if (ids_.contains(ref.node)) {
-      problem(in_quotes(ref.node) + " is a loop, which has no ports", place, "name a pass of its body");
+    if (ids_.contains(id)) {
+      problem(in_quotes(id) + " is a loop, which has no ports", place, "name a pass of its body");
     } else {
       std::vector<std::string> ids;
       for (const auto& [name, index] : result_.index) ids.push_back(name);
-      problem("unknown pass " + in_quotes(ref.node), place, did_you_mean(ref.node, ids));
+      problem("unknown pass " + in_quotes(id), place, did_you_mean(id, ids));
     }
     return nullptr;
   }
 
   void connect(ResolvedNode& node) {
+    const std::string from = pointer_to(node.node->place, "from");
+    for (const std::string& id : node.node->from)
+      if (const uint32_t* source = find_node(id, from)) {
+        node.from.push_back(*source);
+      } else {
+        node.sound = false;
+      }
     for (const auto& [port, ref] : node.node->in) {
-      const uint32_t* source = find_node(ref, in_place(node, port));
+      const uint32_t* source = find_node(ref.node, place_of_input(node, port));
       if (!source) {
         node.sound = false;
         continue;
@@ -130,223 +135,26 @@ class Resolver {
     }
   }
 
-  static std::string in_place(const ResolvedNode& node, const std::string& port) {
-    return pointer_to(pointer_to(node.node->place, "in"), port);
-  }
-
-  // --- declare ---
-  std::vector<int> loop_numbers() const {
-    std::vector<int> numbers;
-    for (const ResolvedNode& node : result_.nodes) numbers.push_back(node.loop);
-    return numbers;
-  }
-
-  std::vector<OrderEdge> data_edges() const {
-    std::vector<OrderEdge> edges;
-    for (uint32_t i = 0; i < result_.nodes.size(); ++i)
-      for (const auto& [port, source] : result_.nodes[i].in) edges.push_back({source.node, i});
-    return edges;
-  }
-
-  void report_cycle(const std::vector<uint32_t>& cycle, const std::string& what) {
-    std::string text;
-    for (const uint32_t node : cycle) text += id(node) + " -> ";
-    problem(what + ": " + text + id(cycle.front()), result_.nodes[cycle.front()].node->place);
-  }
-
   bool declare_in_order() {
-    Order order = stable_order(loop_numbers(), data_edges());
+    Order order = data_order(result_);
     const bool cyclic = !order.cycle.empty();
     if (cyclic) {
-      report_cycle(order.cycle, "a cycle");
+      report_cycle(result_, order.cycle, "a cycle", complaints_);
       order.nodes.resize(result_.nodes.size());  // names and parameters can be checked all the same
       std::iota(order.nodes.begin(), order.nodes.end(), 0u);
       for (ResolvedNode& node : result_.nodes) node.sound = false;
     }
-    for (const uint32_t i : order.nodes) declare(result_.nodes[i]);
-    if (problems_.empty()) declare_history(order.nodes);
+    declare_nodes(result_, order.nodes, setting_, complaints_);
     for (const uint32_t i : order.nodes)
-      if (result_.nodes[i].pass) check_node(result_.nodes[i]);
+      if (result_.nodes[i].pass) check_node(result_, i, complaints_);
     return !cyclic;
-  }
-
-  // The shape of what is connected, for declare(); nothing when the source is in doubt.
-  void add_shape(const ResolvedNode& source, const std::string& port, const std::string& input,
-                 Declaration::Inputs& inputs) {
-    const Port* found = source.declaration.find(port);
-    if (!found) return;
-    Declaration::Connected& connected = inputs[input];
-    if (found->is_buffer) {
-      connected.buffer = found->buffer;
-    } else {
-      connected.image = found->image;
-    }
-  }
-
-  void declare(ResolvedNode& node) {
-    if (!node.pass) return;
-    Declaration::Inputs inputs;
-    for (const auto& [port, source] : node.in) {
-      const ResolvedNode& from = result_.nodes[source.node];
-      node.sound = node.sound && from.sound;
-      add_shape(from, source.port, port, inputs);
-    }
-    for (const auto& [port, source] : node.previous)
-      add_shape(result_.nodes[source.node], source.port, port, inputs);
-    run_declare(node, std::move(inputs));
-    if (!node.declaration.value_errors().empty() || !node.declaration.undeclared().empty())
-      node.sound = false;
-  }
-
-  // A pass that reads its own or a later pass' history learns the shape only once that one is declared.
-  void declare_history(const std::vector<uint32_t>& order) {
-    const bool any = std::any_of(order.begin(), order.end(),
-                                 [&](uint32_t i) { return !result_.nodes[i].previous.empty(); });
-    if (any)
-      for (const uint32_t i : order) declare(result_.nodes[i]);
-  }
-
-  void run_declare(ResolvedNode& node, Declaration::Inputs inputs) {
-    node.declaration = Declaration(setting_, node.node->params, std::move(inputs));
-    try {
-      node.pass->declare(node.declaration);
-    } catch (const Error& error) {
-      for (const Problem& p : error.problems()) problem(p.what, node.node->place, p.hint);
-      node.sound = false;
-    } catch (const std::exception& error) {
-      problem("declaring '" + node.node->type + "' failed: " + error.what(), node.node->place);
-      node.sound = false;
-    }
-  }
-
-  // --- check ---
-  void check_node(ResolvedNode& node) {
-    check_params(node);
-    for (const auto& [port, ref] : node.node->in) check_input(node, port);
-    for (const Port& port : node.declaration.ports()) {
-      const bool input = port.direction == Direction::in || port.direction == Direction::inout;
-      if (input && !port.optional && !node.node->in.contains(port.name))
-        unsound(node, "required input '" + port.name + "' of '" + node.node->type + "' is not connected",
-                pointer_to(node.node->place, "in"));
-    }
-    if (!node.sound) return;
-    const size_t before = problems_.all().size();
-    check_declaration(node, file_, problems_);
-    node.sound = problems_.all().size() == before;
-  }
-
-  void unsound(ResolvedNode& node, std::string what, std::string place, std::string hint = {}) {
-    node.sound = false;
-    problem(std::move(what), std::move(place), std::move(hint));
-  }
-
-  void check_params(ResolvedNode& node) {
-    const std::string place = pointer_to(node.node->place, "params");
-    std::vector<std::string> names;
-    for (const ParamSpec& spec : node.declaration.param_specs()) names.push_back(spec.name);
-    for (const std::string& name : node.declaration.undeclared())
-      unsound(node, "unknown parameter " + in_quotes(name) + " of '" + node.node->type + "'",
-              pointer_to(place, name), did_you_mean(name, names));
-    for (const std::string& sentence : node.declaration.value_errors()) {
-      const std::string name = sentence.substr(1, sentence.find('\'', 1) - 1);  // "'size' is 0: must be ..."
-      unsound(node, sentence, pointer_to(place, name));
-    }
-  }
-
-  void check_input(ResolvedNode& node, const std::string& name) {
-    const Port* port = node.declaration.find(name);
-    const std::string place = in_place(node, name);
-    if (!port || port->direction == Direction::transient) {
-      std::vector<std::string> names;
-      for (const Port& p : node.declaration.ports())
-        if (p.direction == Direction::in || p.direction == Direction::inout) names.push_back(p.name);
-      return unsound(node, "unknown input " + in_quotes(name) + " of '" + node.node->type + "'", place,
-                     did_you_mean(name, names));
-    }
-    if (port->direction == Direction::out)
-      return unsound(node, "'" + name + "' is an output of '" + node.node->type + "', not an input", place);
-    check_source(node, *port, place);
-  }
-
-  void check_source(ResolvedNode& node, const Port& port, const std::string& place) {
-    const bool history = node.previous.contains(port.name);
-    const auto& sources = history ? node.previous : node.in;
-    const auto source = sources.find(port.name);
-    if (source == sources.end()) return;  // reported when it was connected
-    const ResolvedNode& from = result_.nodes[source->second.node];
-    if (!from.pass) return;
-    const Port* given = readable_port(from, source->second.port, file_, place, problems_);
-    if (!given) {
-      node.sound = false;
-      return;
-    }
-    const std::string ref = in_quotes(from.node->id + "." + given->name);
-    if (history && port.direction == Direction::inout)
-      return unsound(node, "'" + port.name + "' is modified in place and cannot be history", place);
-    if (given->is_buffer != port.is_buffer)
-      return unsound(node,
-                     ref + (given->is_buffer ? " is a buffer, and '" : " is an image, and '") + port.name +
-                         (port.is_buffer ? "' takes a buffer" : "' takes an image"),
-                     place);
-    if (!given->is_buffer && !port.array && given->image.layers > 1 && from.sound)
-      unsound(node,
-              ref + " has " + std::to_string(given->image.layers) + " layers, and '" + port.name +
-                  "' takes a single one",
-              place);
-    if (has(port.access, Access::host_read) && !has(given->access, Access::host_read))
-      unsound(node, "'" + port.name + "' is read by the host, and " + ref + " is not host-readable", place);
-  }
-
-  // --- who uses what ---
-  void collect_users() {
-    for (uint32_t i = 0; i < result_.nodes.size(); ++i) {
-      for (const auto& [name, source] : result_.nodes[i].in) {
-        const Port* port = result_.nodes[i].declaration.find(name);
-        if (!port) continue;
-        PortUsers& users = result_.users[source];
-        (port->direction == Direction::inout ? users.modifiers : users.readers).push_back(i);
-      }
-      for (const auto& [name, source] : result_.nodes[i].previous) result_.users[source].previous = true;
-    }
-  }
-
-  std::string name_of(const PortKey& key) const { return result_.nodes[key.node].node->id + "." + key.port; }
-
-  void check_modifiers() {
-    for (const auto& [key, users] : result_.users) {
-      if (users.modifiers.empty()) continue;
-      const uint32_t first = users.modifiers.front();
-      const std::string& place = result_.nodes[users.modifiers.back()].node->place;
-      if (users.modifiers.size() > 1)
-        problem(id(first) + " and " + id(users.modifiers[1]) + " both modify '" + name_of(key) + "' in place",
-                place, "let the second modify what the first gives out");
-      if (users.previous)
-        problem("'" + name_of(key) + "' is read as history, but " + id(first) + " modifies it in place",
-                place, "read the history of what " + id(first) + " gives out");
-      if (std::find(users.readers.begin(), users.readers.end(), first) != users.readers.end())
-        problem(id(first) + " reads '" + name_of(key) + "' and modifies it in place at once", place);
-    }
-  }
-
-  void order_with_modifiers() {
-    std::vector<OrderEdge> edges = data_edges();
-    for (const auto& [key, users] : result_.users)
-      for (const uint32_t modifier : users.modifiers)
-        for (const uint32_t reader : users.readers)
-          if (reader != modifier) edges.push_back({reader, modifier});
-    Order order = stable_order(loop_numbers(), edges);
-    if (!order.cycle.empty())
-      report_cycle(
-          order.cycle,
-          "no order in which every reader of a value runs before the pass that modifies it in place");
-    result_.order = std::move(order.nodes);
   }
 
   void check_outputs() {
     if (graph_.outputs.empty()) problem("the graph has no outputs", "/outputs");
     for (const auto& [name, ref] : graph_.outputs) {
       const std::string place = pointer_to("/outputs", name);
-      const uint32_t* node = find_node(ref, place);
+      const uint32_t* node = find_node(ref.node, place);
       if (!node || !result_.nodes[*node].pass) continue;
       if (ref.previous) problem("an output cannot be history", place);
       readable_port(result_.nodes[*node], ref.port, file_, place, problems_);
@@ -363,29 +171,26 @@ class Resolver {
   const Declaration::Setting setting_;
   const std::string file_;
   Problems& problems_;
+  const Complaints complaints_{file_, problems_};
   ResolvedGraph result_;
   std::map<std::string, std::string> ids_;  // id -> place
 };
 
 }  // namespace
 
-const Port* readable_port(const ResolvedNode& node, const std::string& port, const std::string& file,
-                          const std::string& place, Problems& problems) {
-  const Port* found = node.declaration.find(port);
-  if (found && (found->direction == Direction::out || found->direction == Direction::inout)) return found;
-  std::vector<std::string> names;
-  for (const Port& p : node.declaration.ports())
-    if (p.direction == Direction::out || p.direction == Direction::inout) names.push_back(p.name);
-  const std::string who = "'" + node.node->id + "' (" + node.node->type + ")";
-  const std::string hint = did_you_mean(port, names);
-  if (!found) {
-    problems.add("unknown output " + in_quotes(port) + " of " + who, file, place, hint);
-  } else if (found->direction == Direction::in) {
-    problems.add("'" + port + "' is an input of " + who + ", not an output", file, place, hint);
-  } else {
-    problems.add("'" + port + "' is internal to " + who, file, place, hint);
-  }
-  return nullptr;
+std::string who(const ResolvedNode& node) { return "'" + node.node->id + "' (" + node.node->type + ")"; }
+
+std::string place_of_input(const ResolvedNode& node, const std::string& port) {
+  if (!node.node->in.contains(port)) return pointer_to(node.node->place, "from");
+  return pointer_to(pointer_to(node.node->place, "in"), port);
+}
+
+void report_cycle(const ResolvedGraph& graph, const std::vector<uint32_t>& cycle, const std::string& what,
+                  const Complaints& complaints) {
+  std::string text;
+  for (const uint32_t node : cycle) text += "'" + graph.nodes[node].node->id + "' -> ";
+  complaints.add(what + ": " + text + "'" + graph.nodes[cycle.front()].node->id + "'",
+                 graph.nodes[cycle.front()].node->place);
 }
 
 ResolvedGraph resolve_graph(const Graph& graph, const Declaration::Setting& setting, Problems& problems) {

@@ -26,6 +26,7 @@ struct ResolvedNode {
   int loop = -1;  // index into ResolvedGraph::loops; -1: outside
   std::shared_ptr<Pass> pass;
   Declaration declaration;
+  std::vector<uint32_t> from;               // nodes whose outputs feed the inputs of the same names
   std::map<std::string, PortKey> in;        // connected inputs
   std::map<std::string, PortKey> previous;  // inputs that read the frame before
   bool sound = true;                        // no problem here nor in what it reads
@@ -49,6 +50,7 @@ struct ResolvedGraph {
   std::vector<ResolvedLoop> loops;
   std::map<std::string, uint32_t> index;  // by id
   std::map<PortKey, PortUsers> users;
+  std::vector<std::shared_ptr<const GraphNode>> added;  // nodes that the file does not have
   std::vector<uint32_t> order;  // execution order: readers of a value before the one who modifies it
 };
 
@@ -59,6 +61,12 @@ ResolvedGraph resolve_graph(const Graph& graph, const Declaration::Setting& sett
 // otherwise.
 const Port* readable_port(const ResolvedNode& node, const std::string& port, const std::string& file,
                           const std::string& place, Problems& problems);
+
+// Connects inputs that stand behind other ones (Declaration::input_behind) to what those sources offer.
+void connect_behind(ResolvedNode& node);
+// Is the input `port`, which connects itself, connected where it has to be? A problem otherwise.
+bool check_behind(const ResolvedGraph& graph, const ResolvedNode& node, const Port& port,
+                  const std::string& file, Problems& problems);
 
 // What is wrong with a declaration in itself: accesses against directions, formats and shapes.
 void check_declaration(const ResolvedNode& node, const std::string& file, Problems& problems);

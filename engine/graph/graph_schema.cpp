@@ -1,3 +1,4 @@
+// Makes the JSON Schema of graph files from what the passes declare.
 #include <nlohmann/json.hpp>
 
 #include "engine/graph/graph.h"
@@ -27,7 +28,7 @@ json value_schema(const ParamSpec& spec) {
 }
 
 json standard_of(const ParamSpec& spec) {
-  return std::visit([](const auto& value) { return json(value); }, spec.standard);
+  return std::visit([](const auto& value) { return json(value); }, spec.default_value);
 }
 
 // Every parameter may be a variable instead.
@@ -50,41 +51,69 @@ std::vector<Declaration> variants(const Pass& pass) {
     pass.declare(result.back());
   };
   for (const ParamSpec& spec : specs) {
-    if (spec.type == ParamType::flag) add(spec.name, !std::get<bool>(spec.standard));
+    if (!spec.from.empty()) continue;
+    if (spec.type == ParamType::flag) add(spec.name, !std::get<bool>(spec.default_value));
     for (const std::string& choice : spec.choices) add(spec.name, choice);
   }
   return result;
 }
 
+// Of an input: not one that connects itself.
+bool is_connected_by_file(const Port& port) {
+  return port.beside.empty() && (port.direction == Direction::in || port.direction == Direction::inout);
+}
+
 json inputs_schema(const std::vector<Declaration>& variants) {
   json ports = json::object();
-  std::map<std::string, size_t> required_in;
   for (const Declaration& declaration : variants)
-    for (const Port& port : declaration.ports()) {
-      if (port.direction != Direction::in && port.direction != Direction::inout) continue;
-      ports[port.name] = {{"description", port.help}, {"$ref", "#/$defs/port"}};
-      if (!port.optional) ++required_in[port.name];
-    }
+    for (const Port& port : declaration.ports())
+      if (is_connected_by_file(port))
+        ports[port.name] = {{"description", port.help}, {"$ref", "#/$defs/port"}};
+  return {{"type", "object"}, {"properties", ports}, {"additionalProperties", false}};
+}
+
+// Inputs that every variant asks for.
+json required_inputs(const std::vector<Declaration>& variants) {
+  std::map<std::string, size_t> asked;
+  for (const Declaration& declaration : variants)
+    for (const Port& port : declaration.ports())
+      if (is_connected_by_file(port) && !port.optional) ++asked[port.name];
   json required = json::array();
-  for (const auto& [name, count] : required_in)
+  for (const auto& [name, count] : asked)
     if (count == variants.size()) required.push_back(name);
-  return {{"type", "object"}, {"properties", ports}, {"required", required}, {"additionalProperties", false}};
+  return required;
 }
 
 json params_schema(const std::vector<Declaration>& variants) {
   json params = json::object();
   for (const Declaration& declaration : variants)
     for (const ParamSpec& spec : declaration.param_specs())
-      if (!params.contains(spec.name)) params[spec.name] = param_schema(spec);
+      if (spec.from.empty() && !params.contains(spec.name)) params[spec.name] = param_schema(spec);
   return {{"type", "object"}, {"properties", params}, {"additionalProperties", false}};
+}
+
+// A name, or several, each of `names`.
+json name_list(const json& names, const char* description) {
+  const json one = names.is_null() ? json{{"type", "string"}} : json{{"enum", names}};
+  return {{"description", description},
+          {"anyOf", json::array({one, json{{"type", "array"}, {"items", one}, {"uniqueItems", true}}})}};
 }
 
 // { "if": the type is this one, "then": these inputs and parameters }
 json type_rule(const std::string& type, const Pass& pass) {
   const std::vector<Declaration> declarations = variants(pass);
+  const json params = params_schema(declarations);
+  json names = json::array();
+  for (const auto& [name, param] : params["properties"].items()) names.push_back(name);
   json then{{"description", declarations.front().summary()},
-            {"properties", {{"in", inputs_schema(declarations)}, {"params", params_schema(declarations)}}}};
-  if (!then["properties"]["in"]["required"].empty()) then["required"] = {"in"};
+            {"properties", {{"in", inputs_schema(declarations)}, {"params", params}}}};
+  if (!names.empty())
+    then["properties"]["vars"] = name_list(names, "parameters that are the variables of the same names");
+  const json required = required_inputs(declarations);
+  if (!required.empty())  // one by one, or by the names of those who give them
+    then["anyOf"] =
+        json::array({json{{"required", {"from"}}},
+                     json{{"required", {"in"}}, {"properties", {{"in", {{"required", required}}}}}}});
   return {{"if", {{"properties", {{"type", {{"const", type}}}}}}}, {"then", then}};
 }
 
@@ -95,7 +124,7 @@ json loop_rule() {
               {"max",
                {{"anyOf", json::array({json{{"type", "integer"}, {"minimum", 1}, {"maximum", 65536}},
                                        json{{"$ref", "#/$defs/variable"}}})},
-                {"description", "most turns"}}},
+                {"description", "most iterations"}}},
               {"passes", {{"$ref", "#/$defs/passes"}}}}},
             {"required", {"controller", "max", "passes"}}};
   return {{"if", {{"properties", {{"type", {{"const", "loop"}}}}}}}, {"then", then}};
@@ -114,6 +143,8 @@ json pass_schema() {
            {{"id", {{"type", "string"}, {"pattern", name_pattern}}},
             {"type", {{"enum", types}}},
             {"in", {{"type", "object"}}},
+            {"from", name_list(nullptr, "passes whose outputs feed the inputs of the same names")},
+            {"vars", json::object()},
             {"params", {{"type", "object"}}},
             {"comment", json::object()}}},
           {"allOf", rules},

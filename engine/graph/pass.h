@@ -14,12 +14,14 @@
 
 #include "engine/base/params.h"
 #include "engine/base/shape.h"
+#include "engine/scene/scene_sizes.h"
 
 namespace gnomon {
 
-struct SceneFacts;  // engine/light/scene_facts.h
-class Environment;  // engine/render/context.h
-class Context;      // engine/render/context.h
+struct SceneFacts;     // engine/light/scene_facts.h
+class Environment;     // engine/render/environment.h
+class Context;         // engine/render/context.h
+enum class LightType;  // engine/scene/scene.h
 
 // How a pass touches a port. Flags: a buffer may be read in several ways by one pass.
 enum class Access : uint32_t {
@@ -33,16 +35,26 @@ enum class Access : uint32_t {
   indirect = 1 << 7,       // arguments of an indirect draw or dispatch
   transfer_read = 1 << 8,
   transfer_write = 1 << 9,
-  host_read = 1 << 10,  // output: mapped by the host when its segment is done. input, or a loop
-                        // controller's own output: what decide() reads
+  host_read = 1 << 10,   // output: mapped by the host when its segment is done. input, or a loop
+                         // controller's own output: what decide() reads
+  uniform = 1 << 11,     // input buffer read as a uniform block, all of it: small, and its loads are uniform
+  host_write = 1 << 12,  // output buffer that the pass maps and writes while it is recorded
 };
 constexpr Access operator|(Access a, Access b) { return Access(uint32_t(a) | uint32_t(b)); }
 constexpr bool has(Access set, Access one) { return (uint32_t(set) & uint32_t(one)) != 0; }
 constexpr bool writes(Access access) {
-  return has(access, Access::storage_write | Access::color | Access::depth | Access::transfer_write);
+  return has(access, Access::storage_write | Access::color | Access::depth | Access::transfer_write |
+                         Access::host_write);
 }
 
 enum class Direction { in, out, inout, transient };
+
+// A buffer that belongs to what an image shows, such as the views that the layers of a map are.
+struct Behind {
+  uint32_t node = 0;  // that makes it, by its index in the resolved graph
+  std::string port;
+  BufferShape shape;
+};
 
 struct Port {
   std::string name;
@@ -51,14 +63,20 @@ struct Port {
   bool is_buffer = false;
   bool array = false;     // GLSL sees a 2D array (layers); otherwise a plain 2D image
   bool optional = false;  // an input that may be left unconnected
-  bool kept = false;  // an output or transient that keeps its content from turn to turn and frame to frame
+  bool kept =
+      false;  // an output or transient that keeps its content from iteration to iteration and frame to frame
   bool omittable = false;  // an output that is not there when nobody reads it
   // Of an input that is a shadow map, or made of one: how far from a receiver's place in it texels are read
   // that count. Absent: anywhere.
   std::optional<uint32_t> reach;
   std::string reach_through;  // then the output that those texels are read for; empty: the map ends here
-  ImageShape image;           // of an input: that of the connected output
+  // What readers may ask for beside the port itself, by name (Declaration::input_behind); of an input: what
+  // its source offers.
+  std::map<std::string, Behind, std::less<>> behind;
+  std::string beside;  // of an input that is connected by itself: the input whose source offers it
+  ImageShape image;    // of an input: that of the connected output
   BufferShape buffer;
+  Values traits;  // of an input: what its source says of itself; of an output: what this pass does
   std::string help;
 };
 
@@ -95,21 +113,25 @@ class Declaration {
   // What declare() may depend on beside parameters and inputs; all of it known without a device.
   struct Setting {
     Extent viewport{1280, 720};
-    uint32_t lights = 1;  // lights of the scene; images per light have that many layers
-    uint32_t map_faces =
-        1;  // shadow-map layers: 1 for each spot or directional light, 6 for each point light
+    uint32_t lights = 1;                  // lights of the scene; images per light have that many layers
     uint64_t memory = uint64_t{1} << 30;  // bytes that a technique's shadow maps may take at a time
+    std::vector<LightType> light_types;   // of each light; empty: not known
+    SceneSizes scene{};                   // its geometry
   };
-  // shapes of the connected outputs, by input name; empty: nothing is connected (listing)
+  // shapes and traits of the connected outputs, by input name; empty: nothing is connected (listing)
   struct Connected {
     std::optional<ImageShape> image;
     std::optional<BufferShape> buffer;
+    Values traits = {};
+    std::map<std::string, Behind, std::less<>> behind;
+    uint32_t node = 0;  // the source
+    std::string port;
   };
   using Inputs = std::map<std::string, Connected, std::less<>>;
 
   Declaration() = default;  // listing: defaults, nothing connected
   Declaration(Setting setting, Values given, Inputs inputs)
-      : setting_(setting), given_(std::move(given)), inputs_(std::move(inputs)) {}
+      : setting_(std::move(setting)), given_(std::move(given)), inputs_(std::move(inputs)) {}
 
   const Setting& setting() const { return setting_; }
 
@@ -136,8 +158,8 @@ class Declaration {
   // An image of this pass alone, aliased with others' like every intermediate.
   void transient(std::string name, Access access, bool array, ImageShape shape, std::string help);
 
-  // Of an image of its own: what one turn of a loop or one frame wrote, the next one finds. Undefined before
-  // the first write.
+  // Of an image of its own: what one iteration of a loop or one frame wrote, the next one finds. Undefined
+  // before the first write.
   void keep(std::string_view name);
 
   // Of an output: it need not be there when nobody reads it (Environment::connected).
@@ -146,6 +168,30 @@ class Declaration {
   // in it cannot change what this pass makes. `through`: of a pass that makes another map of it, that output.
   // Casters that only unread texels show need not be drawn (Environment::reach).
   void reads_around(std::string_view input, uint32_t texels, std::string_view through = {});
+
+  // Traits: what is true of an output beside its shape, by name, for those who read it: how depth is encoded,
+  // what was filtered. The engine carries them and knows none of them.
+  void set_trait(std::string_view output, std::string key, Value value);
+  // What the source of an input says of itself is true of the output, too, but for what is set later. An
+  // inout has its source's traits by itself. So is what stands behind it (below).
+  void carry_traits(std::string_view input, std::string_view output);
+  // Of an input's source; nullptr: it says nothing of that, or nothing is connected.
+  const Value* trait(std::string_view input, std::string_view key) const;
+  bool is_connected(std::string_view input) const;
+  // The source of `input` is not what this pass can read: "holds moments, not depth". Told with both nodes.
+  void refuse_source(std::string_view input, std::string why);
+  // A value that `input`'s source decides (spec.default_value): the pass and its shaders see it as a
+  // parameter; a graph file cannot set it.
+  void derived(std::string_view input, ParamSpec spec);
+
+  // Readers of the image `output` may ask for what the buffer `input` of this pass is connected to, by that
+  // name; of an image `input`, for all that they may ask its source for.
+  void offer_behind(std::string_view input, std::string_view output);
+  // A buffer that the source of the input `beside` offers by this name. It is connected by itself; the second
+  // kind only where there is one.
+  BufferShape input_behind(std::string name, std::string_view beside, Access access, std::string help);
+  std::optional<BufferShape> optional_input_behind(std::string name, std::string_view beside, Access access,
+                                                   std::string help);
 
   // This pass darkens surfaces that no caster shades: with its own errors it stays even then.
   void darkens_lit_surfaces() { darkens_ = true; }
@@ -167,11 +213,17 @@ class Declaration {
   // Values given but not declared are for the caller to report; out-of-range or mistyped ones are collected
   // here as sentences ("'size' is 0: must be in 1..16384 texels").
   const std::vector<std::string>& value_errors() const { return value_errors_; }
-  std::vector<std::string> undeclared() const;  // names given that declare() did not declare
-  Params params() const;                        // every declared parameter, given value or default
+  std::vector<std::string> undeclared() const;  // names given that are no parameter of a graph file
+  Params params() const;                        // every parameter: given value, default, or derived
+  struct SourceError {
+    std::string input, why;
+  };
+  const std::vector<SourceError>& source_errors() const { return source_errors_; }
 
  private:
+  using Offers = std::map<std::string, Behind, std::less<>>;
   Setting setting_;
+  std::map<std::string, Offers, std::less<>> offers_;  // of outputs that may yet be declared
   Values given_, resolved_;
   Inputs inputs_;
   PassKind kind_ = PassKind::compute;
@@ -180,6 +232,9 @@ class Declaration {
   std::vector<Port> ports_;
   std::vector<ParamSpec> specs_;
   std::vector<std::string> value_errors_;
+  std::vector<SourceError> source_errors_;
+
+  Port& declared(std::string_view port);
 };
 
 // What a loop's controller sees when the segment that wrote its host-read inputs is done.

@@ -1,3 +1,4 @@
+// Images on the CPU and their files: EXR and PNG.
 #include "engine/image/image.h"
 
 #include <fcntl.h>
@@ -8,7 +9,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
@@ -22,13 +22,11 @@
 
 #include "engine/base/error.h"
 #include "engine/base/input_file.h"
+#include "engine/image/exr.h"
 #include "engine/image/png.h"
 
 namespace gnomon {
 namespace {
-
-constexpr uint64_t max_side = 1u << 16;      // pixels; larger claims come from corrupt headers
-constexpr uint64_t max_values = 1ull << 31;  // floats in one image (8 GiB)
 
 std::string system_message(int code) { return std::generic_category().message(code); }
 
@@ -130,32 +128,6 @@ Imf::Slice float_slice(float* plane, uint32_t width, const Imath::Box2i& window)
   return Imf::Slice::Make(Imf::FLOAT, plane, window, sizeof(float), sizeof(float) * width);
 }
 
-Image read_exr_unchecked(const std::filesystem::path& file) {
-  Imf::InputFile input(file.c_str());
-  if (!input.isComplete()) fail("the EXR file is incomplete (cut off)", file.string());
-  const Imath::Box2i window = input.header().dataWindow();
-  const auto width = static_cast<uint64_t>(int64_t{window.max.x} - window.min.x + 1);
-  const auto height = static_cast<uint64_t>(int64_t{window.max.y} - window.min.y + 1);
-  std::vector<std::string> names;
-  const auto& channels = input.header().channels();
-  for (auto it = channels.begin(); it != channels.end(); ++it) {
-    if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
-      fail("subsampled channels are not supported", file.string(), it.name());
-    names.emplace_back(it.name());
-  }
-  if (width > max_side || height > max_side || width * height * names.size() > max_values)
-    fail(fmt::format("the EXR file is too large ({} x {}, {} channels)", width, height, names.size()),
-         file.string());
-  Image image(static_cast<uint32_t>(width), static_cast<uint32_t>(height), std::move(names));
-  if (Imf::hasComments(input.header())) image.comment = Imf::comments(input.header());
-  Imf::FrameBuffer frame;
-  for (size_t c = 0; c < image.channels.size(); ++c)
-    frame.insert(image.channels[c], float_slice(image.plane(c).data(), image.width, window));
-  input.setFrameBuffer(frame);
-  input.readPixels(window.min.y, window.max.y);
-  return image;
-}
-
 void check_channels(const std::filesystem::path& file, const Image& image, size_t channels) {
   if (image.channels.size() != channels)
     fail(fmt::format("cannot write PNG: {} channels expected, {} given", channels, image.channels.size()),
@@ -202,7 +174,7 @@ bool Image::has(const std::string& name) const {
 Image read_exr(const std::filesystem::path& file) {
   require_readable(file);
   try {
-    return read_exr_unchecked(file);
+    return exr::read(file);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {  // OpenEXR's exceptions name the file; ours do it by themselves

@@ -28,8 +28,13 @@ struct Image {
   }
 };
 
+// One value a pixel of an image from `file`: the channel `name`; or of a layer of that name its Y, or the
+// luminance of its R, G and B; or with "luminance" that of the image's own R, G and B. Error, with the
+// channels there are.
+std::vector<float> scalar_values(const Image& image, const std::string& name, const std::string& file);
+
 // All writers write beside the target and rename, so that nothing half-written remains; Error on failure.
-Image read_exr(const std::filesystem::path& file);
+Image read_exr(const std::filesystem::path& file);  // channels of several parts: "part.channel"
 void write_exr(const std::filesystem::path& file, const Image& image);  // 32-bit float, ZIP
 Image read_image(const std::filesystem::path& file);  // EXR or PNG by extension; PNG as 0..1, not linearised
 void write_png_srgb(const std::filesystem::path& file,

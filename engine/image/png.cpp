@@ -1,3 +1,4 @@
+// Decodes and encodes PNG through stb.
 #include "engine/image/png.h"
 
 #include <fmt/format.h>

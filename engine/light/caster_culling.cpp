@@ -1,5 +1,6 @@
+// Finds the casters that can throw a shadow on what the camera sees, by bounds.
 #include "engine/light/caster_culling.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 
 #include <algorithm>
 #include <array>
@@ -53,19 +54,19 @@ std::optional<glm::dvec4> side_plane(const std::vector<glm::dvec3>& corners, con
   return plane_around(corners, corner(2), glm::cross(corner(3) - corner(1), corner(2) - corner(0)));
 }
 
-bool inside_face(const LightFace& face, const Corners& corners, const glm::dvec3& origin) {
-  glm::dmat4 from = face.light_from_world;
+bool inside_view(const LightView& view, const Corners& corners, const glm::dvec3& origin) {
+  glm::dmat4 from = view.light_from_world;
   from[3] = from * glm::dvec4(origin, 1.0);
-  if (!face.orthographic) return !outside_pyramid(corners, from, face.half_width, face.half_height, 0.0);
+  if (!view.orthographic) return !outside_pyramid(corners, from, view.half_width, view.half_height, 0.0);
   Bounds box;
   for (const glm::dvec3& p : corners) box.add(glm::dvec3(from * glm::dvec4(p, 1.0)));
-  return box.max.x >= -face.half_width && box.min.x <= face.half_width && box.max.y >= -face.half_height &&
-         box.min.y <= face.half_height;
+  return box.max.x >= -view.half_width && box.min.x <= view.half_width && box.max.y >= -view.half_height &&
+         box.min.y <= view.half_height;
 }
 
-// World units that `reach` texels of a face along both axes span at most.
-double reach_world(const LightFace& face, uint32_t map_size, uint32_t reach) {
-  const double half = std::max(face.half_width, face.half_height) * (face.orthographic ? 1.0 : face.far);
+// World units that `reach` texels of a view along both axes span at most.
+double reach_world(const LightView& view, uint32_t map_size, uint32_t reach) {
+  const double half = std::max(view.half_width, view.half_height) * (view.orthographic ? 1.0 : view.far);
   return reach * std::numbers::sqrt2 * 2.0 * half / map_size;
 }
 
@@ -108,7 +109,7 @@ ViewVolume::ViewVolume(const Scene& scene, const Camera& camera, double aspect, 
   glm::dmat4 placed = camera.world_from_camera;
   placed[3] -= glm::dvec4(origin, 0.0);
   const glm::dmat4 view = glm::inverse(placed);
-  const double y = std::tan(0.5 * camera.fov_y), x = y * aspect;
+  const double y = half_extent(camera, aspect).y, x = y * aspect;
   double nearest = 1e300, farthest = 0;
   for (const Instance& instance : scene.instances) {
     const Corners corners = box_corners(scene, instance, origin);
@@ -120,7 +121,8 @@ ViewVolume::ViewVolume(const Scene& scene, const Camera& camera, double aspect, 
   }
   if (nearest > farthest) return;
   nearest_ = std::max(nearest, camera.near);
-  for (const double z : {nearest_, std::max(farthest, nearest_)})
+  farthest_ = std::max(farthest, nearest_);
+  for (const double z : {nearest_, farthest_})
     for (const auto& [sx, sy] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
       corners_.emplace_back(placed * glm::dvec4(sx * x * z, sy * y * z, -z, 1.0));
 }
@@ -153,23 +155,23 @@ bool LightVolume::meets(const std::array<glm::dvec3, 8>& corners) const {
 }
 
 std::vector<std::vector<bool>> casters_in_view(const Scene& scene, const Camera& camera, double aspect,
-                                               const std::vector<LightFace>& faces, uint32_t map_size,
+                                               const std::vector<LightView>& views, uint32_t map_size,
                                                std::optional<uint32_t> reach,
                                                const std::vector<std::string>& shadowless) {
   const glm::dvec3 origin = scene.bounds.empty() ? glm::dvec3(0.0) : scene.bounds.centre();
-  const ViewVolume view(scene, camera, aspect, origin);
+  const ViewVolume seen(scene, camera, aspect, origin);
   std::vector<Corners> boxes;
   for (const Instance& instance : scene.instances) boxes.push_back(box_corners(scene, instance, origin));
   // Bounds are of floats, and positions on the device too: what is nearer to a plane than this is inside.
   const double rounding = 1e-5 * scene.bounds.radius();
   std::vector<std::vector<bool>> needed;
-  for (const LightFace& face : faces) {
+  for (const LightView& view : views) {
     std::vector<bool>& one = needed.emplace_back(boxes.size(), false);
-    if (!shadowless[face.light].empty()) continue;
-    const double around = rounding + (reach ? reach_world(face, map_size, *reach) : 0.0);
-    const LightVolume volume(view, light_place(scene.lights[face.light], origin), around);
+    if (!shadowless[view.light].empty()) continue;
+    const double around = rounding + (reach ? reach_world(view, map_size, *reach) : 0.0);
+    const LightVolume volume(seen, light_place(scene.lights[view.light], origin), around);
     for (size_t i = 0; i < boxes.size(); ++i)
-      one[i] = inside_face(face, boxes[i], origin) && (!reach || volume.meets(boxes[i]));
+      one[i] = inside_view(view, boxes[i], origin) && (!reach || volume.meets(boxes[i]));
   }
   return needed;
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
 #include "engine/scene/scene.h"
 
@@ -22,11 +22,12 @@ class ViewVolume {
   bool empty() const { return corners_.empty(); }  // no instance is in view
   // View depth of the nearest bounds in view, at least the camera's near plane.
   double nearest() const { return nearest_; }
+  double farthest() const { return farthest_; }  // of the farthest bounds in view, at least nearest()
 
  private:
   friend class LightVolume;
   std::vector<glm::dvec3> corners_;  // near and far: (-x, -y), (x, -y), (x, y), (-x, y)
-  double nearest_ = 0;
+  double nearest_ = 0, farthest_ = 0;
 };
 
 // All segments from a light to what a camera sees: the convex hull of both.
@@ -53,11 +54,11 @@ bool outside_pyramid(const std::array<glm::dvec3, 8>& corners, const glm::dmat4&
 // A light as LightVolume takes it.
 glm::dvec4 light_place(const Light& light, const glm::dvec3& origin);
 
-// Instances to draw into each face of a shadow map so that everything the camera sees finds its casters.
-// `reach`: texels that readers use around a receiver's place; none: anywhere, and only what a face does not
-// hold is left out. `shadowless`: lights whose faces need none (SceneFacts). [face][instance].
+// Instances to draw into each view of a shadow map so that everything the camera sees finds its casters.
+// `reach`: texels that readers use around a receiver's place; none: anywhere, and only what a view does not
+// hold is left out. `shadowless`: lights whose views need none (SceneFacts). [view][instance].
 std::vector<std::vector<bool>> casters_in_view(const Scene& scene, const Camera& camera, double aspect,
-                                               const std::vector<LightFace>& faces, uint32_t map_size,
+                                               const std::vector<LightView>& views, uint32_t map_size,
                                                std::optional<uint32_t> reach,
                                                const std::vector<std::string>& shadowless);
 

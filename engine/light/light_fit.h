@@ -1,17 +1,17 @@
-// Light faces of a moving scene: what never changes is measured once.
+// Light views of a moving scene: what never changes is measured once.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/scene/scene.h"
 
 namespace gnomon {
 
-struct FaceFit;  // engine/light/light_faces.cpp
+struct ViewFit;  // engine/light/light_views.cpp
 
-// faces() gives what light_faces() would for the scene as it stands, from the vertices of what moves alone
+// views() gives what light_views() would for the scene as it stands, from the vertices of what moves alone
 // where the light stands still. Instances and lights may move between calls where Instance::moving and
 // Light::moving say so.
 class LightFit {
@@ -20,22 +20,22 @@ class LightFit {
   LightFit(LightFit&&) noexcept;
   LightFit& operator=(LightFit&&) noexcept;
   ~LightFit();
-  std::vector<LightFace> faces(const Scene& scene) const;
+  std::vector<LightView> views(const Scene& scene) const;
 
  private:
   uint32_t map_size_, border_;
-  std::vector<FaceFit> still_;  // per light that stands still: of the instances that do
+  std::vector<ViewFit> still_;  // per light that stands still: of the instances that do
 };
 
-// A face for all samples of an area light: a frustum whose apex may stand anywhere on the light and whose
+// A view for all samples of an area light: a frustum whose apex may stand anywhere on the light and whose
 // window is moved for each sample so that it holds all receivers of the light's own frustum.
-struct AreaFace {
-  LightFace face;  // the light's own, widened for the samples; its range holds what any of them can see
+struct AreaView {
+  LightView view;  // the light's own, widened for the samples; its range holds what any of them can see
   double converge =
       0;  // a sample at x, y of the light's frame has its window's centre at -converge * (x, y), as tangents
 };
-// `centre`: the light's own face, of `scene`. Of a light without area, and of faces of other lights than
-// spots: the same face.
-AreaFace area_face(const Scene& scene, const LightFace& centre);
+// `centre`: the light's own view, of `scene`. Of a light without area, and of views of other lights than
+// spots: the same view.
+AreaView area_view(const Scene& scene, const LightView& centre);
 
 }  // namespace gnomon

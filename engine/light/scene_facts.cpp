@@ -1,3 +1,4 @@
+// Finds what of a scene decides which passes it needs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +8,7 @@
 #include "engine/scene/area_light.h"
 #include "engine/scene/mesh_clean.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/wide_spot.h"
 
 namespace gnomon {
 namespace {
@@ -39,7 +41,8 @@ bool overlap(const Bounds& a, const Bounds& b) {
 struct Source {
   bool directional = false;
   glm::dvec4 place{0.0};  // light_place(), relative to the scene's centre
-  double radius = 0;      // of the area around it
+  double radius = 0;      // of the area around it; of a directional light, of what it can move shadows by
+  double half_angle = 0;  // of a directional light: tangent of half its angular diameter
   std::optional<double> range;
   glm::dmat4 light_from_world{1.0};  // relative to the scene's centre
   std::vector<glm::dvec3> points;
@@ -54,14 +57,15 @@ Source source_of(const Light& light, const glm::dvec3& origin) {
   source.light_from_world = glm::inverse(placed);
   source.place = light_place(light, origin);
   if (light.type != LightType::directional) source.range = light.range;
-  if (!shines_as_area(light))
+  if (source.directional && has_size(light)) source.half_angle = 0.5 * light.area->width;
+  if (source.directional || !has_size(light))
     source.points.emplace_back(placed[3]);
   else
     for (const glm::dvec3& p : enclosing_points(*light.area))
       source.points.emplace_back(placed * glm::dvec4(p, 1.0));
   for (const glm::dvec3& p : source.points)
     source.radius = std::max(source.radius, glm::distance(p, glm::dvec3(placed[3])));
-  if (light.type == LightType::spot) source.half_tangent = std::tan(0.5 * light.map_fov);
+  if (light.type == LightType::spot && !is_cut(light)) source.half_tangent = std::tan(0.5 * light.map_fov);
   return source;
 }
 
@@ -73,6 +77,9 @@ bool behind(const Body& caster, const Body& receiver, const Source& source, doub
   double side = 0;
   if (source.directional) {
     side = glm::dot(glm::dvec3(source.place), receiver.normal);
+    // Of the light's disc some points are on the other side.
+    const double across = std::sqrt(std::max(0.0, 1 - side * side));
+    if (std::abs(side) <= source.half_angle * across) return false;
   } else {
     for (const glm::dvec3& p : source.points) {
       const double h = height(p);
@@ -93,6 +100,8 @@ bool may_shadow(const Body& caster, const Body& receiver, const Source& source, 
   if (source.directional) {
     const Bounds from = bounds_of(caster.corners, light_axes);
     Bounds onto = bounds_of(receiver.corners, light_axes);
+    const double aside = source.half_angle * std::max(0.0, from.max.z - onto.min.z);
+    onto.min -= glm::dvec3(aside, aside, 0), onto.max += glm::dvec3(aside, aside, 0);
     onto.max.z = std::max(onto.max.z, from.max.z);  // towards the light without end
     return overlap(from, onto);
   }
@@ -104,9 +113,22 @@ bool may_shadow(const Body& caster, const Body& receiver, const Source& source, 
   return true;
 }
 
+// The longest way towards a directional light from what the camera may see to what may cast a shadow on it.
+double way_to_light(const std::vector<Body>& bodies, const View& view, const Source& source) {
+  double lowest = 1e300, highest = -1e300;
+  for (size_t i = 0; i < bodies.size(); ++i)
+    for (const glm::dvec3& p : bodies[i].corners) {
+      const double height = glm::dot(p, glm::dvec3(source.place));
+      highest = std::max(highest, height);
+      if (view.visible[i]) lowest = std::min(lowest, height);
+    }
+  return std::max(0.0, highest - lowest);
+}
+
 // A penumbra is at most as wide as the light, times the way from the nearest caster to the farthest receiver,
 // over that from the light to the caster. World units.
 double widest_penumbra(const std::vector<Body>& bodies, const View& view, const Source& source) {
+  if (source.directional) return 2 * source.radius;
   if (source.radius == 0) return 0;
   const glm::dvec3 centre(source.place);
   double nearest = 1e300, farthest = 0;
@@ -217,24 +239,24 @@ SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect, 
   glm::dmat4 placed = camera.world_from_camera;
   placed[3] -= glm::dvec4(origin, 0.0);
   const glm::dmat4 view = glm::inverse(placed);
-  const double half_height = std::tan(0.5 * camera.fov_y);
+  const double half = half_extent(camera, aspect).y;
   View seen{glm::dvec3(placed[3]), {}, ViewVolume(scene, camera, aspect, origin)};
   for (const Body& body : bodies)
-    seen.visible.push_back(
-        !outside_pyramid(body.corners, view, half_height * aspect, half_height, camera.near));
+    seen.visible.push_back(!outside_pyramid(body.corners, view, half * aspect, half, camera.near));
   facts.middle_depth = std::max(glm::length(seen.eye), 1e-30);
   const bool still = !facts.casters_move && !camera.moving;
   facts.nearest_depth = still ? std::max(seen.volume.nearest(), camera.near) : camera.near;
-  if (height > 0) facts.smallest_pixel = 2 * half_height / height * facts.nearest_depth;
+  if (height > 0) facts.smallest_pixel = 2 * half / height * facts.nearest_depth;
   for (const Light& light : scene.lights) {
     facts.light_moves.push_back(light.moving);
     const bool may = !still || light.moving;  // somewhere on the way
-    const Source source = source_of(light, origin);
+    Source source = source_of(light, origin);
+    if (source.directional) source.radius = source.half_angle * way_to_light(bodies, seen, source);
     facts.shadowless.push_back(may ? std::string()
                                    : shadowless_reason(bodies, seen, source, 1e-6 * scene.bounds.radius()));
     const double widest = may ? 1e300 : widest_penumbra(bodies, seen, source);
     facts.penumbra.push_back(widest == 0 ? 0.0 : widest / std::max(facts.smallest_pixel, 1e-300));
-    facts.light_size.push_back(shines_as_area(light) ? std::max(light.area->width, light.area->height) : 0.0);
+    facts.light_size.push_back(has_size(light) ? std::max(light.area->width, light.area->height) : 0.0);
   }
   return facts;
 }

@@ -23,7 +23,7 @@ struct SceneFacts {
   // per light:
   std::vector<std::string> shadowless;  // why the camera sees none of its shadows; empty: it may see some
   std::vector<bool> light_moves;
-  std::vector<double> light_size;  // largest side of the area light; 0 for a point
+  std::vector<double> light_size;  // largest side of its AreaLight; 0 for a point
   std::vector<double> penumbra;    // no penumbra that the camera sees is wider, pixels
 
   // Does its area make no difference to any pixel?

@@ -1,10 +1,9 @@
+// Compiles a graph to a plan, step by step.
 #include "engine/plan/compile.h"
 
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/base/json_text.h"
-#include "engine/graph/graph_shadowless.h"
 #include "engine/light/scene_facts.h"
 #include "engine/plan/compile_parts.h"
 
@@ -13,142 +12,27 @@ namespace {
 
 class Compiler {
  public:
-  Compiler(const Graph& graph, const Declaration::Setting& setting, const SceneFacts& facts,
-           const CompileOptions& options)
-      : graph_(graph), facts_(facts), options_(options), file_(graph.file.string()) {
-    Problems problems;
-    resolved_ = resolve_graph(graph, setting, problems);
-    if (problems.empty()) find_roots(problems);
-    problems.raise();
-    keep_own_errors();
-    leave_technique_out(setting);
-  }
+  Compiler(const Wanted& wanted, const CompileOptions& options)
+      : wanted_(wanted), resolved_(wanted.graph), options_(options) {}
 
   Plan run() {
-    if (!options_.keep_all) folding_ = fold(resolved_, facts_, file_);
-    live_ = live_nodes(resolved_, folding_, roots());
+    if (!options_.keep_all) folding_ = fold(resolved_, wanted_.facts, wanted_.file);
+    live_ = live_nodes(resolved_, folding_, wanted_.roots());
     add_nodes();
     name_results();
     find_loops();
     find_lifetimes(plan_, loops_);
-    place_in_heap(plan_, options_, file_);
+    place_in_heap(plan_, options_, wanted_.file);
     cut_segments(plan_, loops_);
-    const std::vector<ResourceUses> uses = collect_uses(plan_, file_);
+    const std::vector<ResourceUses> uses = collect_uses(plan_, wanted_.file);
     add_barriers(plan_, uses, loops_);
     add_host_barriers(plan_, uses);
     tell_left_out();
-    plan_.facts = std::move(facts_);
+    plan_.facts = wanted_.facts;
     return std::move(plan_);
   }
 
  private:
-  // --- scenes without a visible shadow ---
-  // Where a pass darkens lit surfaces, a light without casters is one with shadows.
-  void keep_own_errors() {
-    const bool darkens = std::any_of(resolved_.nodes.begin(), resolved_.nodes.end(),
-                                     [](const ResolvedNode& node) { return node.declaration.darkens(); });
-    if (!darkens) return;
-    for (std::string& why : facts_.shadowless)
-      if (why == SceneFacts::no_caster) why.clear();
-  }
-
-  void leave_technique_out(const Declaration::Setting& setting) {
-    const std::string why = facts_.no_shadow();
-    if (options_.keep_all || why.empty()) return;
-    const std::optional<Graph> without = without_shadows(graph_, setting.lights);
-    if (!without) return;
-    Problems problems;
-    auto shadowless = std::make_unique<Graph>(*without);
-    ResolvedGraph resolved = resolve_graph(*shadowless, setting, problems);
-    const PortKey shown = outputs_.at("visibility");
-    const PortRef& instead = shadowless->outputs.at("visibility");
-    const bool fits =
-        problems.empty() &&
-        image_of(resolved_, shown) == image_of(resolved, {resolved.index.at(instead.node), instead.port});
-    if (!fits) return;  // the graph's visibility is something of its own
-    wanted_ = reachable();
-    resolved_ = std::move(resolved);
-    shadowless_ = std::move(shadowless);
-    why_shadowless_ = why;
-    outputs_.clear();
-    captures_.clear();
-    find_roots(problems);
-    problems.raise();
-  }
-
-  static ImageShape image_of(const ResolvedGraph& graph, const PortKey& key) {
-    return graph.nodes[key.node].declaration.find(key.port)->image;
-  }
-
-  // Ids of the nodes that outputs and captures need when nothing is left out.
-  std::set<std::string> reachable() const {
-    std::set<std::string> ids;
-    for (const uint32_t index : live_nodes(resolved_, Folding{}, roots()))
-      ids.insert(resolved_.nodes[index].node->id);
-    return ids;
-  }
-
-  const Graph& graph() const { return shadowless_ ? *shadowless_ : graph_; }
-
-  // --- outputs and captures ---
-  void find_roots(Problems& problems) {
-    for (const auto& [name, ref] : graph().outputs) outputs_[name] = {resolved_.index.at(ref.node), ref.port};
-    for (const std::string& capture : options_.captures) find_capture(capture, problems);
-  }
-
-  void find_capture(const std::string& capture, Problems& problems) {
-    const std::string place = "capture " + in_quotes(capture);
-    const size_t dot = capture.find('.');
-    const auto node = resolved_.index.find(capture.substr(0, dot));
-    if (dot == std::string::npos || node == resolved_.index.end()) {
-      std::vector<std::string> ids;
-      for (const auto& [id, index] : resolved_.index) ids.push_back(id);
-      problems.add(
-          dot == std::string::npos ? "must name a port" : "unknown pass", file_, place,
-          dot == std::string::npos ? "write \"pass.port\"" : did_you_mean(capture.substr(0, dot), ids));
-      return;
-    }
-    const std::string port = capture.substr(dot + 1);
-    if (const auto key = captured_port(node->second, port, place, problems)) captures_[capture] = *key;
-  }
-
-  // An input's capture is what is connected to it.
-  std::optional<PortKey> captured_port(uint32_t index, const std::string& name, const std::string& place,
-                                       Problems& problems) const {
-    const ResolvedNode& node = resolved_.nodes[index];
-    const Port* port = node.declaration.find(name);
-    PortKey key{index, name};
-    if (!port) {
-      std::vector<std::string> names;
-      for (const Port& p : node.declaration.ports()) names.push_back(p.name);
-      problems.add("unknown port " + in_quotes(name), file_, place, did_you_mean(name, names));
-      return std::nullopt;
-    }
-    if (port->direction == Direction::in) {
-      const auto source = node.in.find(name);
-      if (source == node.in.end()) {
-        problems.add("nothing of this frame is connected to it", file_, place);
-        return std::nullopt;
-      }
-      key = source->second;
-    }
-    const auto users = resolved_.users.find(key);
-    if (users != resolved_.users.end() && !users->second.modifiers.empty()) {
-      const std::string& modifier = resolved_.nodes[users->second.modifiers.front()].node->id;
-      problems.add("is modified in place by '" + modifier + "'", file_, place,
-                   "capture what that one gives out");
-      return std::nullopt;
-    }
-    return key;
-  }
-
-  std::vector<PortKey> roots() const {
-    std::vector<PortKey> keys;
-    for (const auto& [name, key] : outputs_) keys.push_back(key);
-    for (const auto& [name, key] : captures_) keys.push_back(key);
-    return keys;
-  }
-
   // --- nodes and resources ---
   void add_nodes() {
     for (const uint32_t index : resolved_.order)
@@ -161,7 +45,8 @@ class Compiler {
     const ResolvedNode& node = resolved_.nodes[index];
     for (const Port& port : node.declaration.ports()) {
       if (port.direction != Direction::out && port.direction != Direction::transient) continue;
-      if (port.omittable && !options_.keep_all && !is_read({index, port.name})) continue;
+      const bool omittable = port.omittable && (!options_.keep_all || is_shadow_free(port));
+      if (omittable && !is_read({index, port.name})) continue;
       Resource resource;
       resource.name = node.node->id + "." + port.name;
       resource.is_buffer = port.is_buffer;
@@ -173,7 +58,7 @@ class Compiler {
   }
 
   bool is_exported(const PortKey& key) const {
-    const std::vector<PortKey> all = roots();
+    const std::vector<PortKey> all = wanted_.roots();
     return std::any_of(all.begin(), all.end(),
                        [&](const PortKey& root) { return root_of(resolved_, folding_, root) == key; });
   }
@@ -264,11 +149,12 @@ class Compiler {
     (resource.is_buffer ? resource.buffer_usage : resource.image_usage) |=
         resource.is_buffer ? buffer_usage_of(port.access) : image_usage_of(port.access);
     resource.host_visible = resource.host_visible || has(port.access, Access::host_read);
+    resource.host_written = resource.host_written || has(port.access, Access::host_write);
   }
 
   void name_results() {
-    for (const auto& [name, key] : outputs_) plan_.outputs[name] = exported(key);
-    for (const auto& [name, key] : captures_) plan_.captures[name] = exported(key);
+    for (const auto& [name, key] : wanted_.outputs) plan_.outputs[name] = exported(key);
+    for (const auto& [name, key] : wanted_.captures) plan_.captures[name] = exported(key);
   }
 
   uint32_t exported(const PortKey& key) {
@@ -302,33 +188,26 @@ class Compiler {
 
   // --- what does not run ---
   void tell_left_out() {
-    const std::set<std::string> wanted = shadowless_ ? wanted_ : reachable();
     for (const uint32_t index : resolved_.order) {
       if (live_.contains(index)) continue;
       const GraphNode& node = *resolved_.nodes[index].node;
-      plan_.left_out.push_back({node.id, node.type, reason(index, wanted.contains(node.id))});
+      plan_.left_out.push_back({node.id, node.type, reason(index, wanted_.needed.contains(node.id))});
     }
   }
 
-  std::string reason(uint32_t index, bool wanted) const {
-    if (!wanted) return "no output or capture needs it";
-    if (shadowless_) return why_shadowless_;
+  std::string reason(uint32_t index, bool needed) const {
+    if (!needed) return "no output or capture needs it";
+    if (!wanted_.why_shadowless.empty()) return wanted_.why_shadowless;
     const auto said = folding_.reasons.find(index);
     if (said != folding_.reasons.end()) return said->second;
     return "only passes that are left out read it";
   }
 
-  const Graph& graph_;
-  SceneFacts facts_;
+  const Wanted& wanted_;
+  const ResolvedGraph& resolved_;  // wanted_'s
   const CompileOptions& options_;
-  const std::string file_;
-  ResolvedGraph resolved_;
-  std::unique_ptr<Graph> shadowless_;  // what resolved_ is made of, where the camera sees no shadow
-  std::string why_shadowless_;
-  std::set<std::string> wanted_;  // then: what the graph as written needs
   Folding folding_;
   std::set<uint32_t> live_;
-  std::map<std::string, PortKey> outputs_, captures_;
   std::map<PortKey, uint32_t> resource_of_, constants_;  // of a port that creates memory; of a folded port
   std::map<uint32_t, uint32_t> position_;                // of a live node
   std::vector<LoopRange> loops_;
@@ -339,7 +218,20 @@ class Compiler {
 
 Plan compile(const Graph& graph, const Declaration::Setting& setting, const SceneFacts& facts,
              const CompileOptions& options) {
-  return Compiler(graph, setting, facts, options).run();
+  const Wanted wanted = find_wanted(graph, setting, facts, options);
+  return Compiler(wanted, options).run();
+}
+
+std::set<std::string> technique_passes(const Graph& graph, const Declaration::Setting& setting) {
+  SceneFacts nothing;
+  nothing.lights = setting.lights;
+  nothing.shadowless.assign(setting.lights, "it is asked what does without shadows");
+  const Wanted wanted = find_wanted(graph, setting, nothing, {});
+  std::set<std::string> own = wanted.needed;
+  if (wanted.why_shadowless.empty()) return {};
+  for (const uint32_t index : live_nodes(wanted.graph, Folding{}, wanted.roots()))
+    own.erase(wanted.graph.nodes[index].node->id);
+  return own;
 }
 
 }  // namespace gnomon

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct Resource {
   VkImageUsageFlags image_usage = 0;
   VkBufferUsageFlags buffer_usage = 0;
   bool host_visible = false;  // read by the host
+  bool host_written = false;  // written by the host
   bool history = false;       // two copies, swapped every frame; never aliased
   bool kept = false;          // one copy, with what the frame before left in it; never aliased
   bool exported = false;      // graph output or capture: never aliased
@@ -50,7 +52,7 @@ struct Barrier {
   uint32_t resource = 0;
   Use before, after;
   bool discard = false;   // contents undefined before (first use of aliased or transient memory)
-  bool once = false;      // in a loop's body: only in the first turn (later ones: repeat_barriers)
+  bool once = false;      // in a loop's body: only in the first iteration (later ones: repeat_barriers)
   bool previous = false;  // of the copy of the frame before (Resource::history)
 };
 
@@ -79,8 +81,8 @@ struct LoopPlan {
   uint32_t first_segment = 0, last_segment = 0;  // [first, last) of Plan::segments
   uint32_t controller = 0;                       // index into Plan::nodes
   uint32_t max = 1;
-  // Before the second and later turns; the body's own barriers are then recorded again, except those marked
-  // once.
+  // Before the second and later iterations; the body's own barriers are then recorded again, except those
+  // marked once.
   std::vector<Barrier> repeat_barriers;
 };
 
@@ -115,6 +117,10 @@ struct CompileOptions {
 // Throws Error (file, place) for what does not fit together: shapes, formats, accesses, cycles.
 Plan compile(const Graph& graph, const Declaration::Setting& setting, const SceneFacts& facts,
              const CompileOptions& options = {});
+
+// Ids of the passes that are the technique's own: those that a scene without a visible shadow does without.
+// None where the graph has nothing to put in their place.
+std::set<std::string> technique_passes(const Graph& graph, const Declaration::Setting& setting);
 
 // The plan as stable, readable text: the tests' and `gnomon explain`'s view.
 std::string to_text(const Plan& plan);

@@ -1,3 +1,4 @@
+// Places the barriers of a plan, those of aliased memory included.
 #include <algorithm>
 
 #include "engine/plan/compile_parts.h"
@@ -165,7 +166,7 @@ class Barriers {
   void between(uint32_t i, const std::vector<Epoch>& epochs, bool previous) {
     for (size_t e = 1; e < epochs.size(); ++e) {
       const uint32_t position = epochs[e].first;
-      // from outside into a loop: later turns come from the loop's own end
+      // from outside into a loop: later iterations come from the loop's own end
       const LoopRange* loop = loop_at(position);
       const bool enters = loop && std::none_of(epochs.begin(), epochs.begin() + std::ptrdiff_t(e),
                                                [&](const Epoch& epoch) { return touches(epoch, *loop); });
@@ -173,7 +174,7 @@ class Barriers {
     }
   }
 
-  // From the state at the end of a turn to that at the start of the next.
+  // From the state at the end of an iteration to that at the start of the next.
   void repeat(uint32_t i, const std::vector<Epoch>& epochs, bool previous, uint32_t loop_index) {
     const LoopRange& loop = loops_[loop_index];
     const Epoch *first = nullptr, *last = nullptr;
@@ -185,7 +186,7 @@ class Barriers {
     if (!first || (first == last && !first->write)) return;
     const bool stays = plan_.resources[i].constant || plan_.resources[i].kept;
     const bool made_in_loop = first == &epochs.front() && !previous && !stays;
-    if (made_in_loop && first->first >= loop.first) return;  // discarded anew every turn
+    if (made_in_loop && first->first >= loop.first) return;  // discarded anew every iteration
     plan_.loops[loop_index].repeat_barriers.push_back(
         {i, scope_after(*last), first->use, false, false, previous});
   }

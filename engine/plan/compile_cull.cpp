@@ -1,3 +1,4 @@
+// Finds the passes that an output needs, and leaves out the rest.
 #include "engine/plan/compile_parts.h"
 
 namespace gnomon {
@@ -48,7 +49,7 @@ class Culler {
     if (node.loop >= 0) mark(graph_.loops[node.loop].controller);
   }
 
-  // What the body modifies in place in one turn is what it reads in the next.
+  // What the body modifies in place in one iteration is what it reads in the next.
   void need_next_turn(int loop, const PortKey& key) {
     const auto found = modifiers_.find({loop, root_of(graph_, folding_, key)});
     if (found == modifiers_.end()) return;

@@ -1,3 +1,4 @@
+// Divides each resource's use into epochs between which something has to happen.
 #include <algorithm>
 
 #include "engine/base/error.h"

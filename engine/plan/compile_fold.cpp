@@ -1,3 +1,4 @@
+// Folds passes that yield a constant or an input untouched.
 #include <algorithm>
 
 #include "engine/base/error.h"

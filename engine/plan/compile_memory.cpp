@@ -1,3 +1,4 @@
+// Places transient resources in one heap, so that those never live together share memory.
 #include <algorithm>
 #include <numeric>
 
@@ -49,7 +50,7 @@ class Heap {
 
   static bool in_heap_kind(const Resource& resource) {
     return !resource.exported && !resource.history && !resource.kept && !resource.host_visible &&
-           !resource.constant;
+           !resource.host_written && !resource.constant;
   }
 
  private:
@@ -89,7 +90,7 @@ class Heap {
 
 bool in_heap(const Resource& resource) { return resource.size > 0; }
 
-// In a loop everything is live from the first pass to the last: the next turn may read it again.
+// In a loop everything is live from the first pass to the last: the next iteration may read it again.
 void find_lifetimes(Plan& plan, const std::vector<LoopRange>& loops) {
   std::vector<char> used(plan.resources.size(), 0);
   for (uint32_t position = 0; position < plan.nodes.size(); ++position) {

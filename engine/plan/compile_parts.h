@@ -25,6 +25,27 @@ inline uint64_t bytes_of(const Resource& resource) {
   return resource.is_buffer ? bytes_of(resource.buffer) : bytes_of(resource.image);
 }
 
+// --- what is compiled (compile_wanted.cpp) ---
+struct Wanted {
+  ResolvedGraph graph;
+  std::map<std::string, PortKey> outputs, captures;
+  SceneFacts facts;              // as passes may rely on them
+  std::set<std::string> needed;  // ids of the passes that outputs and captures need when nothing is left out
+  std::string why_shadowless;    // why the technique is left out as a whole; empty: it is not
+  std::string file;              // for errors
+
+  std::vector<PortKey> roots() const;  // of outputs and captures
+};
+Wanted find_wanted(const Graph& graph, const Declaration::Setting& setting, const SceneFacts& facts,
+                   const CompileOptions& options);
+
+// --- scenes without a visible shadow (compile_shadowless.cpp) ---
+// Whether an output can stand in for a technique's visibility (shadow_free.h).
+bool is_shadow_free(const Port& port);
+// What the output `visibility` shows, and whatever else reads that, becomes what the passes declare to be the
+// same without shadows. False, and nothing is changed, where none has one of its shape.
+bool leave_technique_out(Wanted& wanted, const Declaration::Setting& setting);
+
 // --- leaving out (compile_fold.cpp) ---
 struct Folding {
   // What a port is instead of its own pass' output: a constant (known by `source`, the port it was declared

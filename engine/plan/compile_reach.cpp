@@ -1,3 +1,4 @@
+// Finds how far from a receiver's own texel any reader of a map looks.
 #include <algorithm>
 
 #include "engine/plan/compile_parts.h"

@@ -1,3 +1,4 @@
+// Cuts a plan into segments where the host reads a result.
 #include <algorithm>
 
 #include "engine/plan/compile_parts.h"
@@ -30,7 +31,8 @@ std::vector<HostRead> host_reads(const Plan& plan, const std::vector<LoopRange>&
       if (port.direction != Direction::in || !has(port.access, Access::host_read) || !this_frame) continue;
       uint32_t writer = written->second;
       const LoopRange* loop = loop_around(loops, writer);
-      if (loop && loop != loop_around(loops, position)) writer = loop->last - 1;  // wait once, not every turn
+      if (loop && loop != loop_around(loops, position))
+        writer = loop->last - 1;  // wait once, not every iteration
       reads.push_back({writer, position, resource,
                        "'" + node.id + "' reads '" + plan.resources[resource].name + "' on the host"});
     }
@@ -65,8 +67,8 @@ std::vector<Wait> find_waits(std::vector<HostRead> reads) {
   return waits;
 }
 
-// Why the host waits at the end of a loop's turn: its controller reads what it wrote itself. Empty: it does
-// not.
+// Why the host waits at the end of a loop's iteration: its controller reads what it wrote itself. Empty: it
+// does not.
 std::string controller_reads(const Plan& plan, const LoopRange& loop) {
   const PlanNode& controller = plan.nodes[loop.controller];
   for (const Port& port : controller.declaration.ports())

@@ -1,3 +1,4 @@
+// Writes a plan as text.
 #include <algorithm>
 #include <iterator>
 #include <span>
@@ -39,6 +40,8 @@ constexpr Flag access_names[] = {
     {VK_ACCESS_2_TRANSFER_READ_BIT, "transfer_read"},
     {VK_ACCESS_2_TRANSFER_WRITE_BIT, "transfer_write"},
     {VK_ACCESS_2_HOST_READ_BIT, "host_read"},
+    {VK_ACCESS_2_HOST_WRITE_BIT, "host_write"},
+    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform_read"},
 };
 
 std::string flags_text(uint64_t bits, std::span<const Flag> names) {
@@ -150,7 +153,7 @@ class Writer {
     if (!plan_.loops.empty()) line("loops");
     for (const LoopPlan& loop : plan_.loops) {
       line("  " + loop.id + " segments " + range(loop.first_segment, loop.last_segment) + ", controller " +
-           plan_.nodes[loop.controller].id + ", at most " + std::to_string(loop.max) + " turns");
+           plan_.nodes[loop.controller].id + ", at most " + std::to_string(loop.max) + " iterations");
       barriers("", loop.repeat_barriers, "    ");
     }
   }
@@ -183,6 +186,7 @@ class Writer {
     if (resource.history) text += ", history";
     if (resource.kept) text += ", kept";
     if (resource.host_visible) text += ", host visible";
+    if (resource.host_written) text += ", host written";
     if (resource.exported) text += ", exported";
     return text;
   }

@@ -1,3 +1,4 @@
+// How a pass uses a resource: stages, access and layout.
 #include "engine/plan/compile.h"
 #include "engine/plan/compile_parts.h"
 
@@ -65,6 +66,8 @@ Use use_of(Access access, PassKind kind, bool is_buffer, VkFormat format) {
   add(Access::indirect, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
   add(Access::transfer_read, transfer, VK_ACCESS_2_TRANSFER_READ_BIT);
   add(Access::transfer_write, transfer, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+  add(Access::uniform, shader, VK_ACCESS_2_UNIFORM_READ_BIT);
+  add(Access::host_write, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT);
   // with other flags: the pass' own use; that the host reads the result is the segment's business
   if (access == Access::host_read)
     use = {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, use.layout};
@@ -86,6 +89,7 @@ VkImageUsageFlags image_usage_of(Access access) {
 VkBufferUsageFlags buffer_usage_of(Access access) {
   VkBufferUsageFlags usage = 0;
   if (has(access, Access::storage_read | Access::storage_write)) usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  if (has(access, Access::uniform)) usage |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
   if (has(access, Access::vertex)) usage |= VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
   if (has(access, Access::indirect)) usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
   if (has(access, Access::transfer_read)) usage |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;

@@ -1,3 +1,4 @@
+// How passes record their commands.
 #include "engine/render/context.h"
 
 #include <fmt/format.h>
@@ -5,20 +6,15 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/light/scene_facts.h"
+#include "engine/light/view_set.h"
 #include "engine/plan/compile_parts.h"
-#include "engine/render/preamble.h"
+#include "engine/render/device_plan.h"
+#include "engine/render/gpu_scene.h"
 #include "engine/vulkan/commands.h"
+#include "engine/vulkan/occlusion_queries.h"
 
 namespace gnomon {
 namespace {
-
-const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& resources,
-                            const std::string& port) {
-  const auto found = node.resources.find(port);
-  if (found == node.resources.end()) fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
-  return resources[found->second];
-}
 
 constexpr uint32_t kTile = 8;  // side of dispatch_over's workgroups, pixels
 
@@ -47,91 +43,6 @@ VkImageView target_view(const GpuImage& image, const Targets& targets, std::opti
 
 }  // namespace
 
-Environment::Environment(std::shared_ptr<Device> device, const GpuScene& scene, const SceneFacts& scene_facts,
-                         const RenderSettings& settings, const PlanNode& node, const NodeState& state,
-                         const std::vector<Physical>& resources, VkPipelineCache cache)
-    : device_(std::move(device)),
-      scene_(scene),
-      scene_facts_(scene_facts),
-      settings_(settings),
-      node_(node),
-      state_(state),
-      resources_(resources),
-      cache_(cache) {}
-
-ImageShape Environment::shape(const std::string& port) const {
-  return physical_of(node_, resources_, port).image.shape();
-}
-
-bool Environment::connected(const std::string& port) const { return node_.resources.contains(port); }
-
-std::optional<uint32_t> Environment::reach(const std::string& output) const {
-  const auto found = node_.reach.find(output);
-  if (found == node_.reach.end()) fail(fmt::format("pass '{}' has no output '{}'", node_.id, output));
-  return found->second;
-}
-
-Defines Environment::with_parameters(Defines defines) const {
-  for (auto& d : parameter_defines(node_.params)) defines.push_back(std::move(d));
-  defines.emplace_back("KEEP_ALL", settings_.keep_all ? "1" : "0");
-  return defines;
-}
-
-Pipeline Environment::compute(const std::string& file, Defines defines) const {
-  return make_compute_pipeline(
-      device_, state_.pipeline_layout.get(),
-      {file, ShaderStage::compute, state_.preamble, with_parameters(std::move(defines))}, cache_);
-}
-
-Pipeline Environment::raster(RasterState state) const {
-  state.defines = with_parameters(std::move(state.defines));
-  return make_raster_pipeline(device_, state_.pipeline_layout.get(), state, state_.preamble, cache_);
-}
-
-Buffer Environment::buffer(uint64_t bytes, VkBufferUsageFlags usage) const {
-  return Buffer(device_, std::max<uint64_t>(bytes, 16), usage, Place::device);
-}
-
-Buffer Environment::host_buffer(uint64_t bytes, VkBufferUsageFlags usage) const {
-  return Buffer(device_, std::max<uint64_t>(bytes, 16), usage, Place::host);
-}
-
-Buffer Environment::upload(std::span<const std::byte> bytes, VkBufferUsageFlags usage) const {
-  return upload_buffer(device_, bytes, usage);
-}
-
-void Environment::attach(const std::string& port, const Buffer& buffer) const {
-  const uint64_t most = device_->limits().maxStorageBufferRange;
-  if (buffer.size() > most)
-    fail(fmt::format("pass '{}' needs {} bytes for '{}'", node_.id, buffer.size(), port), {}, {},
-         fmt::format("this device's storage buffers have at most {} bytes: use a smaller scene", most));
-  for (const ShaderPort& shown : shader_ports(node_.declaration)) {
-    if (shown.port->name != port) continue;
-    const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
-    for (const VkDescriptorSet set : {state_.set, state_.other_set}) {  // the other: of every second frame
-      if (!set) continue;
-      VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, shown.binding, 0, 1};
-      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-      write.pBufferInfo = &info;
-      vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
-    }
-    return;
-  }
-  fail(fmt::format("pass '{}' has no buffer port '{}' that shaders see", node_.id, port));
-}
-
-void Environment::check_mips(const std::string& port) const {
-  const VkFormat format = shape(port).format;
-  VkFormatProperties properties{};
-  vkGetPhysicalDeviceFormatProperties(device_->physical(), format, &properties);
-  constexpr VkFormatFeatureFlags kNeeded = VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT |
-                                           VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
-  if ((properties.optimalTilingFeatures & kNeeded) == kNeeded) return;
-  fail(fmt::format("pass '{}' needs mip levels of '{}', and this device cannot filter {}", node_.id, port,
-                   format_name(format)),
-       {}, {}, "do without mip levels, or use another number format");
-}
-
 Context::Context(VkCommandBuffer commands, const GpuScene& scene, const PlanNode& node,
                  const NodeState& state, const std::vector<Physical>& resources,
                  const std::vector<Physical>& previous, uint32_t iteration,
@@ -150,14 +61,25 @@ const Physical& Context::physical(const std::string& port) const {
   return physical_of(node_, back != node_.previous_inputs.end() && back->second ? previous_ : resources_,
                      port);
 }
+const Params& Context::params() const { return node_.params; }
 ImageShape Context::shape(const std::string& port) const { return physical(port).image.shape(); }
 const Buffer& Context::buffer(const std::string& port) const { return physical(port).buffer; }
+
+const ViewSet& Context::views(const std::string& port) const { return views_of(node_, resources_, port); }
+void Context::publish(const std::string& port, ViewSet views) const {
+  *physical(port).views = std::move(views);
+}
 
 void Context::bind(const Pipeline& pipeline) {
   vkCmdBindPipeline(commands_, pipeline.bind_point, pipeline.handle);
   const VkDescriptorSet sets[] = {scene_.frame_set(), state_.set};
   vkCmdBindDescriptorSets(commands_, pipeline.bind_point, pipeline.layout, 0, state_.set ? 2 : 1, sets, 0,
                           nullptr);
+}
+
+void Context::push_bytes(const Pipeline& pipeline, std::span<const std::byte> bytes, uint32_t offset) {
+  vkCmdPushConstants(commands_, pipeline.layout, VK_SHADER_STAGE_ALL, offset, uint32_t(bytes.size()),
+                     bytes.data());
 }
 
 void Context::dispatch(const Pipeline& pipeline, uint32_t x, uint32_t y, uint32_t z) {
@@ -176,6 +98,10 @@ void Context::dispatch_indirect(const Pipeline& pipeline, const std::string& por
 
 void Context::fill(const std::string& buffer_port, uint32_t value, uint64_t offset, uint64_t size) {
   vkCmdFillBuffer(commands_, physical(buffer_port).buffer.handle(), offset, size, value);
+}
+
+void Context::update(const std::string& buffer_port, std::span<const std::byte> bytes, uint64_t offset) {
+  vkCmdUpdateBuffer(commands_, physical(buffer_port).buffer.handle(), offset, bytes.size(), bytes.data());
 }
 
 void Context::clear(const std::string& image_port, uint32_t value) {
@@ -267,6 +193,8 @@ void Context::set_area(Extent extent) {
 void Context::set_cull(VkCullModeFlags mode) { vkCmdSetCullMode(commands_, mode); }
 
 void Context::bind_geometry() {
+  if (scene_.scene().meshes.empty())
+    fail(fmt::format("pass '{}' draws the scene, and there is none", node_.id));
   const VkBuffer buffers[] = {scene_.positions(), scene_.attributes()};
   const VkDeviceSize offsets[] = {0, 0};
   vkCmdBindVertexBuffers(commands_, 0, 2, buffers, offsets);
@@ -335,6 +263,17 @@ void Context::draw_fullscreen(const Pipeline& pipeline) {
   bind(pipeline);
   set_cull(VK_CULL_MODE_NONE);
   vkCmdDraw(commands_, 3, 1, 0, 0);
+}
+
+void Context::draw_indirect(const Pipeline& pipeline, const std::string& port, uint64_t offset) {
+  bind(pipeline);
+  set_cull(VK_CULL_MODE_NONE);
+  vkCmdDrawIndirect(commands_, physical(port).buffer.handle(), offset, 1, sizeof(VkDrawIndirectCommand));
+}
+
+void Context::bind_vertices(const std::string& buffer_port, uint64_t offset) {
+  const VkBuffer buffer = physical(buffer_port).buffer.handle();
+  vkCmdBindVertexBuffers(commands_, 0, 1, &buffer, &offset);
 }
 
 }  // namespace gnomon

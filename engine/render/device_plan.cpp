@@ -1,21 +1,36 @@
+// A plan on a device: resources and memory, and every node's layouts and descriptor sets.
 #include "engine/render/device_plan.h"
 
-#include <cstring>
+#include <fmt/format.h>
 
+#include <cstring>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/base/format.h"
 #include "engine/render/preamble.h"
 #include "engine/vulkan/commands.h"
 
 namespace gnomon {
 namespace {
 
+void check_range(const Device& device, const Resource& r) {
+  const uint64_t bytes = bytes_of(r.buffer), most = device.limits().maxStorageBufferRange;
+  if (r.is_buffer && (r.buffer_usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0 && bytes > most)
+    fail(fmt::format("'{}' needs {} bytes", r.name, bytes), {}, {},
+         fmt::format("this device's storage buffers have at most {} bytes: use a smaller scene", most));
+}
+
 Physical make_physical(const std::shared_ptr<Device>& device, const Resource& r, bool own_memory) {
+  check_range(*device, r);
   Physical physical;
   if (r.is_buffer) {
     const uint64_t bytes =
         std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16);  // Vulkan has no empty buffers
     const VkBufferUsageFlags fill = r.history ? VK_BUFFER_USAGE_TRANSFER_DST_BIT : 0;
     physical.buffer = Buffer(device, bytes, r.buffer_usage | fill,
-                             r.host_visible ? Place::host : Place::device, own_memory);
+                             r.host_visible || r.host_written ? Place::host : Place::device, own_memory);
+    physical.views = std::make_shared<ViewSet>();
   } else {
     const VkImageUsageFlags fill = r.constant || r.history ? VK_IMAGE_USAGE_TRANSFER_DST_BIT : 0;
     physical.image = GpuImage(device, r.image, r.image_usage | fill, own_memory);
@@ -45,14 +60,55 @@ VkMemoryBarrier2 memory_barrier(const Barrier& b) {
 }
 
 VkDescriptorType descriptor_type(const Port& port) {
+  if (has(port.access, Access::uniform)) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   if (port.is_buffer) return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   return has(port.access, Access::sampled) ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
                                            : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 }
 
+// What shaders see of a port's image: all of it, or each mip level by itself.
+std::vector<VkImageView> views_of(const Port& port, const GpuImage& image) {
+  if (has(port.access, Access::sampled)) return {image.sampled_view(port.array)};
+  const uint32_t levels = storage_levels(port);
+  if (levels == 1) return {image.storage_view(port.array)};
+  std::vector<VkImageView> views;
+  const VkImageViewType type = port.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  for (uint32_t level = 0; level < levels; ++level)
+    views.push_back(image.view(type, 0, port.array ? image.shape().layers : 1, level, 1, image.aspect()));
+  return views;
+}
+
+// Of one node's storage images, and what the device shows to a shader at most.
+void check_storage_images(const Device& device, const PlanNode& node) {
+  uint32_t count = 0;
+  for (const ShaderPort& shown : shader_ports(node.declaration))
+    if (descriptor_type(*shown.port) == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE)
+      count += storage_levels(*shown.port);
+  const uint32_t most = device.limits().maxPerStageDescriptorStorageImages;
+  if (count <= most) return;
+  fail("pass '" + node.id + "' writes " + std::to_string(count) + " images or mip levels", {}, {},
+       "this device shows a shader at most " + std::to_string(most) + ": use a smaller map");
+}
+
 }  // namespace
 
+const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& resources,
+                            const std::string& port) {
+  const auto found = node.resources.find(port);
+  if (found == node.resources.end()) fail(fmt::format("pass '{}' has no port '{}'", node.id, port));
+  return resources[found->second];
+}
+
+const ViewSet& views_of(const PlanNode& node, const std::vector<Physical>& resources,
+                        const std::string& port) {
+  const Physical& physical = physical_of(node, resources, port);
+  if (!physical.views || physical.views->views.empty())
+    fail(fmt::format("no views are known of '{}' of pass '{}'", port, node.id));
+  return *physical.views;
+}
+
 MemoryNeed device_need(const std::shared_ptr<Device>& device, const Resource& r) {
+  check_range(*device, r);
   const uint64_t granularity = device->limits().bufferImageGranularity;
   const VkMemoryRequirements need =
       r.is_buffer ? Buffer(device, std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16), r.buffer_usage,
@@ -100,22 +156,24 @@ void DevicePlan::make_resources() {
 }
 
 void DevicePlan::make_nodes() {
-  uint32_t images = 1, storage_images = 1, buffers = 1;
+  uint32_t images = 1, storage_images = 1, buffers = 1, blocks = 0;
   for (const PlanNode& node : plan_.nodes)
     for (const ShaderPort& shown : shader_ports(node.declaration)) {
-      if (shown.port->is_buffer)
+      if (has(shown.port->access, Access::uniform))
+        ++blocks;
+      else if (shown.port->is_buffer)
         ++buffers;
       else if (has(shown.port->access, Access::sampled))
         ++images;
       else
-        ++storage_images;
+        storage_images += storage_levels(*shown.port);
     }
   const uint32_t copies = has_history_ ? 2 : 1;
   const uint32_t count = copies * (uint32_t(plan_.nodes.size()) + 1);
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, copies * images},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copies * storage_images},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, copies * buffers},
-                                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count}};
+                                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, copies * blocks + count}};
   VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   info.maxSets = count;
   info.poolSizeCount = uint32_t(std::size(sizes));
@@ -128,11 +186,13 @@ void DevicePlan::make_nodes() {
 void DevicePlan::make_node(uint32_t index) {
   const PlanNode& node = plan_.nodes[index];
   NodeState& state = nodes_[index];
-  state.preamble = light_kind_text(scene_.faces()) + preamble(node.declaration, node.constant_inputs);
+  check_storage_images(*device_, node);
+  state.preamble = light_kind_text(scene_.scene().lights) + preamble(node.declaration, node.constant_inputs);
   const auto shown = shader_ports(node.declaration);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const ShaderPort& s : shown)
-    bindings.push_back({s.binding, descriptor_type(*s.port), 1, VK_SHADER_STAGE_ALL, nullptr});
+    bindings.push_back(
+        {s.binding, descriptor_type(*s.port), storage_levels(*s.port), VK_SHADER_STAGE_ALL, nullptr});
   const auto block = parameter_block(node.params);
   if (!block.empty()) {
     bindings.push_back(
@@ -183,17 +243,22 @@ void DevicePlan::write_set(const PlanNode& node, NodeState& state) {
     const Physical& physical = physical_at(node, s.port->name);
     VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, state.set, s.binding, 0, 1};
     w.descriptorType = descriptor_type(*s.port);
-    VkDescriptorImageInfo image{sampler_.get(), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED};
     VkDescriptorBufferInfo buffer{physical.buffer.handle(), 0, VK_WHOLE_SIZE};
+    const uint64_t most = device_->limits().maxUniformBufferRange;
+    if (has(s.port->access, Access::uniform) && physical.buffer.size() > most)
+      fail(fmt::format("'{}' has {} bytes, and '{}' reads at most {} as a uniform block", s.port->name,
+                       physical.buffer.size(), device_->info().name, most),
+           {}, node.id);
+    std::vector<VkDescriptorImageInfo> images;
     if (s.port->is_buffer) {
       w.pBufferInfo = &buffer;
     } else {
-      const bool sampled = has(s.port->access, Access::sampled);
-      image.imageView =
-          sampled ? physical.image.sampled_view(s.port->array) : physical.image.storage_view(s.port->array);
-      image.imageLayout =
+      const VkImageLayout layout =
           use_of(s.port->access, node.declaration.kind(), false, physical.image.shape().format).layout;
-      w.pImageInfo = &image;
+      for (const VkImageView view : views_of(*s.port, physical.image))
+        images.push_back({sampler_.get(), view, layout});
+      w.descriptorCount = uint32_t(images.size());
+      w.pImageInfo = images.data();
     }
     vkUpdateDescriptorSets(device_->handle(), 1, &w, 0, nullptr);
   }

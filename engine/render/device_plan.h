@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/light/view_set.h"
 #include "engine/plan/compile.h"
 #include "engine/render/gpu_scene.h"
 #include "engine/vulkan/handle.h"
@@ -15,7 +16,16 @@ namespace gnomon {
 struct Physical {
   GpuImage image;
   Buffer buffer;
+  std::shared_ptr<ViewSet> views;  // of a buffer of light views: what the host knows of them
 };
+
+// That of a node's port among `resources` (Plan's order). Error: no such port.
+const Physical& physical_of(const PlanNode& node, const std::vector<Physical>& resources,
+                            const std::string& port);
+
+// The light views that the host knows of in a node's port. Error: none.
+const ViewSet& views_of(const PlanNode& node, const std::vector<Physical>& resources,
+                        const std::string& port);
 
 // One node's own state on the device: layouts, descriptor set and parameter block.
 struct NodeState {
@@ -44,7 +54,7 @@ class DevicePlan {
 
   void swap_history();  // between frames
   void forget();        // history is zero again, as before the first frame; between frames
-  // Records the barriers; those marked once only in a loop's first turn.
+  // Records the barriers; those marked once only in a loop's first iteration.
   void barriers(VkCommandBuffer commands, const std::vector<Barrier>& list, bool first_turn = true) const;
 
  private:

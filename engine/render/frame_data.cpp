@@ -1,16 +1,20 @@
+// Fills the data that every shader sees: camera, lights and views.
 #include "engine/render/frame_data.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
+#include "engine/scene/wide_spot.h"
 
 #include <cmath>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+
+#include "engine/scene/area_light.h"
 
 namespace gnomon {
 namespace {
 
 // Infinite far plane, Vulkan clip space (y down). Reversed: depth = near / z; standard: 1 - near / z.
 glm::dmat4 camera_projection(const Camera& camera, double aspect, bool reversed_z) {
-  const double focal = 1.0 / std::tan(0.5 * camera.fov_y);
+  const double focal = 1.0 / half_extent(camera, aspect).y;
   glm::dmat4 p(0.0);
   p[0][0] = focal / aspect;
   p[1][1] = -focal;
@@ -24,6 +28,14 @@ glm::dmat4 view_rotation(const Camera& camera) {
   return glm::dmat4(glm::transpose(glm::dmat3(camera.world_from_camera)));
 }
 
+glm::vec4 light_size(const Light& light) {
+  if (!has_size(light)) return glm::vec4(0.0f);
+  const AreaLight& area = *light.area;
+  const auto shape = double(area.shape);
+  if (light.type == LightType::directional) return {0.0, 0.0, shape, 0.5 * area.width};
+  return {0.5 * area.width, 0.5 * area.height, shape, 0.0};
+}
+
 // Rows of a rigid light_from_world, for positions relative to `eye`. Subtracted in double: exact at far
 // origins.
 void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, glm::vec4 (&rows)[3]) {
@@ -34,59 +46,60 @@ void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, gl
 }  // namespace
 
 FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
-                     bool reversed_z, uint32_t lights, uint32_t faces, uint32_t frame) {
-  const double aspect = camera.aspect.value_or(double(width) / height);
+                     bool reversed_z, uint32_t lights, uint32_t frame) {
+  const double aspect = double(width) / height;
   const glm::dmat3 world_from_camera(camera.world_from_camera);
   const glm::dmat4 view = view_rotation(camera);
-  const double half_height = std::tan(0.5 * camera.fov_y), half_width = half_height * aspect;
+  const double half = half_extent(camera, aspect).y, half_width = half * aspect;
   FrameData data{};
   data.clip_from_relative = glm::mat4(camera_projection(camera, aspect, reversed_z) * view);
   data.view_from_relative = glm::mat4(view);
-  data.ray_corner = glm::vec4(world_from_camera * glm::dvec3(-half_width, half_height, -1.0), 0.0);
+  data.ray_corner = glm::vec4(world_from_camera * glm::dvec3(-half_width, half, -1.0), 0.0);
   data.ray_dx = glm::vec4(world_from_camera[0] * (2.0 * half_width / width), 0.0);
-  data.ray_dy = glm::vec4(world_from_camera[1] * (-2.0 * half_height / height), 0.0);
+  data.ray_dy = glm::vec4(world_from_camera[1] * (-2.0 * half / height), 0.0);
   data.viewport = {float(width), float(height), 1.0f / float(width), 1.0f / float(height)};
-  data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, 0.0f, 0.0f};
-  data.counts = {lights, faces, frame, 0};
+  data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, float(camera.far.value_or(0.0)), 0.0f};
+  data.counts = {lights, 0, frame, 0};
   const glm::dvec3 step(camera.world_from_camera[3] - previous.world_from_camera[3]);
   data.previous_clip_from_relative =
-      glm::mat4(camera_projection(previous, previous.aspect.value_or(double(width) / height), reversed_z) *
-                view_rotation(previous) * glm::translate(glm::dmat4(1.0), step));
+      glm::mat4(camera_projection(previous, aspect, reversed_z) * view_rotation(previous) *
+                glm::translate(glm::dmat4(1.0), step));
   return data;
 }
 
-std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFace>& faces,
-                                  const glm::dvec3& eye) {
+std::vector<LightData> light_data(const Scene& scene, const glm::dvec3& eye) {
   std::vector<LightData> result;
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     LightData data{};
     relative_rows(glm::inverse(light.world_from_light), eye, data.rows);
-    const double type = light.type == LightType::spot ? 0 : light.type == LightType::point ? 1 : 2;
+    const bool wide = light.type == LightType::spot && view_type(light) == LightType::point;
+    const double type = wide ? 3 : light.type == LightType::spot ? 0 : light.type == LightType::point ? 1 : 2;
     data.position = glm::vec4(glm::dvec3(light.world_from_light[3]) - eye, type);
     data.direction =
         glm::vec4(-glm::normalize(glm::dvec3(light.world_from_light[2])), light.range.value_or(0.0));
     data.intensity = glm::vec4(light.color * light.intensity, 0.0);
     data.cone = glm::vec4(std::cos(light.inner_cone), std::cos(light.outer_cone), 0.0, 0.0);
-    for (uint32_t f = 0; f < faces.size(); ++f) {
-      if (faces[f].light != i) continue;
-      if (data.faces.y++ == 0) data.faces.x = f;
-    }
+    data.size = light_size(light);
     result.push_back(data);
   }
   return result;
 }
 
-std::vector<FaceData> face_data(const std::vector<LightFace>& faces, const glm::dvec3& eye) {
-  std::vector<FaceData> result;
-  for (const LightFace& face : faces) {
-    FaceData data{};
+std::vector<LightViewData> light_view_data(const std::vector<LightView>& views, const glm::dvec3& eye) {
+  std::vector<LightViewData> result;
+  for (const LightView& view : views) {
+    LightViewData data{};
     data.clip_from_relative =
-        glm::mat4(face.clip_from_light() * face.light_from_world * glm::translate(glm::dmat4(1.0), eye));
-    relative_rows(face.light_from_world, eye, data.rows);
-    data.range = glm::vec4(face.near, face.far, face.half_width, face.half_height);
-    data.info = {face.light, face.orthographic ? 1u : 0u, 0u, 0u};
+        glm::mat4(view.clip_from_light() * view.light_from_world * glm::translate(glm::dmat4(1.0), eye));
+    relative_rows(view.light_from_world, eye, data.rows);
+    data.range = glm::vec4(view.near, view.far, view.half_width, view.half_height);
+    data.info = {view.light, view.orthographic ? 1u : 0u, 0u, 0u};
     result.push_back(data);
+  }
+  for (uint32_t i = 0; i < views.size(); ++i) {
+    glm::uvec4& of_light = result[views[i].light].info;
+    if (of_light.w++ == 0) of_light.z = i;
   }
   return result;
 }
@@ -97,6 +110,8 @@ std::vector<InstanceData> instance_data(const Scene& scene, const std::vector<ui
   for (const Instance& instance : scene.instances) {
     InstanceData data{};
     data.relative_from_object = glm::mat4(glm::translate(glm::dmat4(1.0), -eye) * instance.world_from_object);
+    // Hidden: all vertices in one point, so that no pass draws anything of it.
+    if (!instance.visible) data.relative_from_object = glm::mat4(0.0f), data.relative_from_object[3].w = 1.0f;
     const glm::dmat3 linear(instance.world_from_object);
     // The cofactor matrix turns normals rightly for every scale, and its sign follows a mirrored instance's
     // winding.

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/scene/scene.h"
 
 namespace gnomon {
@@ -15,8 +15,8 @@ struct FrameData {
   glm::vec4 ray_corner;                   // relative position at view depth 1 of the image's top left corner
   glm::vec4 ray_dx, ray_dy;               // step of it per pixel
   glm::vec4 viewport;                     // width, height, 1/width, 1/height
-  glm::vec4 depth;                        // near plane (world units), 1 when reversed z
-  glm::uvec4 counts;                      // lights, faces, frame index, unused
+  glm::vec4 depth;                        // near plane (world units), 1 when reversed z, far plane or 0
+  glm::uvec4 counts;                      // lights, unused, frame index, unused
   glm::mat4 previous_clip_from_relative;  // the previous frame's camera; relative to this frame's eye
 };
 
@@ -26,14 +26,17 @@ struct LightData {
   glm::vec4 direction;  // unit, the way it shines; w: range in world units, 0 = unlimited
   glm::vec4 intensity;  // linear RGB, candela or lux
   glm::vec4 cone;       // cosines of the inner and outer half angle
-  glm::uvec4 faces;     // first face, number of faces
+  // Half width and half height of its area, world units; its AreaLight::Shape; of a directional light the
+  // tangent of half its angular diameter. All 0 without a size.
+  glm::vec4 size;
 };
 
-struct FaceData {
+struct LightViewData {
   glm::mat4 clip_from_relative;
   glm::vec4 rows[3];  // light_from_relative, rigid, looks along -z
   glm::vec4 range;    // near, far, half width, half height (tangents, or world units)
-  glm::uvec4 info;    // light, 1 when orthographic
+  // light, 1 when orthographic; of the i-th of all views, first and number of those of light i
+  glm::uvec4 info;
 };
 
 struct InstanceData {
@@ -47,15 +50,12 @@ struct MaterialData {
   glm::vec4 alpha;  // cutoff (0: opaque), 1 when double-sided
 };
 
-// Where point-light faces overlap: 1/32 of the map on every side lies outside the face's 90 degrees.
-constexpr uint32_t kFaceBorderPart = 32;
-
 // `previous`: the camera of the frame before; of the first frame, its own.
 FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
-                     bool reversed_z, uint32_t lights, uint32_t faces, uint32_t frame);
-std::vector<LightData> light_data(const Scene& scene, const std::vector<LightFace>& faces,
-                                  const glm::dvec3& eye);
-std::vector<FaceData> face_data(const std::vector<LightFace>& faces, const glm::dvec3& eye);
+                     bool reversed_z, uint32_t lights, uint32_t frame);
+std::vector<LightData> light_data(const Scene& scene, const glm::dvec3& eye);
+// `views`: light by light, some of each.
+std::vector<LightViewData> light_view_data(const std::vector<LightView>& views, const glm::dvec3& eye);
 std::vector<InstanceData> instance_data(const Scene& scene, const std::vector<uint32_t>& first_triangle,
                                         const glm::dvec3& eye);
 std::vector<MaterialData> material_data(const Scene& scene);

@@ -1,3 +1,4 @@
+// Uploads a scene, and keeps its per-frame data up to date.
 #include "engine/render/gpu_scene.h"
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 #include <glm/gtc/type_precision.hpp>
 
 #include "engine/base/error.h"
-#include "engine/light/light_face.h"
 #include "engine/scene/animation.h"
 #include "engine/vulkan/commands.h"
 
@@ -37,11 +37,65 @@ VertexAttributes attributes_at(const Mesh& mesh, size_t i) {
   return a;
 }
 
-// Geometric normal of a triangle, in double: slivers keep theirs.
+// Geometric normal of a triangle, in double: slivers keep theirs. One without area, which only a shape that
+// changes has, is never seen.
 glm::vec3 triangle_normal(const Mesh& mesh, size_t triangle) {
   const uint32_t* i = &mesh.indices[3 * triangle];
   const glm::dvec3 a = mesh.positions[i[0]], b = mesh.positions[i[1]], c = mesh.positions[i[2]];
-  return glm::normalize(glm::cross(b - a, c - a));
+  const glm::dvec3 n = glm::cross(b - a, c - a);
+  return glm::dot(n, n) > 0 ? glm::normalize(n) : glm::dvec3(0, 1, 0);
+}
+
+std::vector<VertexAttributes> attributes_of(const Mesh& mesh) {
+  std::vector<VertexAttributes> result;
+  for (size_t i = 0; i < mesh.positions.size(); ++i) result.push_back(attributes_at(mesh, i));
+  return result;
+}
+
+std::vector<glm::i16vec2> normals_of(const Mesh& mesh) {
+  std::vector<glm::i16vec2> result;
+  for (size_t t = 0; t < mesh.triangles(); ++t)
+    result.push_back(octahedral_snorm16(triangle_normal(mesh, t)));
+  return result;
+}
+
+// Writes parts of device buffers, all at once.
+class Rewrite {
+ public:
+  template <class T>
+  void add(const Buffer& target, size_t first, const std::vector<T>& values) {
+    if (values.empty()) return;
+    const auto bytes = bytes_of(values);
+    parts_.push_back({&target, {bytes_.size(), first * sizeof(T), bytes.size()}});
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+
+  void run(const std::shared_ptr<Device>& device) const {
+    if (parts_.empty()) return;
+    const Buffer staging(device, bytes_.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Place::host);
+    std::memcpy(staging.bytes().data(), bytes_.data(), bytes_.size());
+    OneShot once(device);
+    for (const Part& part : parts_)
+      vkCmdCopyBuffer(once.commands(), staging.handle(), part.target->handle(), 1, &part.copy);
+    VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+    barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT;
+    vkCmdPipelineBarrier(once.commands(), VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                         0, 1, &barrier, 0, nullptr, 0, nullptr);
+    once.submit_and_wait();
+  }
+
+ private:
+  struct Part {
+    const Buffer* target;
+    VkBufferCopy copy;
+  };
+  std::vector<Part> parts_;
+  std::vector<std::byte> bytes_;
+};
+
+bool same(const Shape& shape, const Mesh& mesh) {
+  return shape.positions == mesh.positions && shape.normals == mesh.normals;
 }
 
 Handle<VkDescriptorSetLayout> make_layout(const std::shared_ptr<Device>& device,
@@ -71,22 +125,20 @@ GpuImage upload_texture(const std::shared_ptr<Device>& device, const Texture& te
   return image;
 }
 
+VkSamplerAddressMode address_mode(Wrap wrap) {
+  if (wrap == Wrap::clamp) return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  return wrap == Wrap::mirror ? VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT : VK_SAMPLER_ADDRESS_MODE_REPEAT;
+}
+
 Handle<VkSampler> make_sampler(const std::shared_ptr<Device>& device, const Texture& texture) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = texture.nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-  info.addressModeU =
-      texture.repeat_u ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.addressModeV =
-      texture.repeat_v ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  info.addressModeU = address_mode(texture.wrap_u);
+  info.addressModeV = address_mode(texture.wrap_v);
   return create(device, vkCreateSampler, info, vkDestroySampler, "vkCreateSampler");
 }
 
 bool is_mirrored(const glm::dmat4& transform) { return glm::determinant(glm::dmat3(transform)) < 0; }
-
-bool same(const LightFace& a, const LightFace& b) {
-  return a.light_from_world == b.light_from_world && a.half_width == b.half_width &&
-         a.half_height == b.half_height && a.near == b.near && a.far == b.far;
-}
 
 bool same(const FrameView& a, const FrameView& b) {
   return a.camera == b.camera && a.width == b.width && a.height == b.height && a.reversed_z == b.reversed_z;
@@ -109,8 +161,6 @@ GpuScene::GpuScene(std::shared_ptr<Device> device, std::shared_ptr<const Scene> 
     : device_(std::move(device)),
       moving_(scene->animation ? std::make_shared<Scene>(*scene) : nullptr),
       scene_(moving_ ? moving_ : std::move(scene)),
-      fit_(*scene_, kFaceBorderPart, 1),
-      faces_(fit_.faces(*scene_)),
       lights_changed_(scene_->lights.size(), true) {
   upload_geometry();
   upload_textures();
@@ -127,10 +177,11 @@ void GpuScene::upload_geometry() {
     first_vertex_.push_back(uint32_t(positions.size()));
     first_triangle_.push_back(uint32_t(normals.size()));
     positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (size_t i = 0; i < mesh.positions.size(); ++i) attributes.push_back(attributes_at(mesh, i));
+    const std::vector<VertexAttributes> own = attributes_of(mesh);
+    attributes.insert(attributes.end(), own.begin(), own.end());
     indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
-    for (size_t t = 0; t < mesh.triangles(); ++t)
-      normals.push_back(octahedral_snorm16(triangle_normal(mesh, t)));
+    const std::vector<glm::i16vec2> faces = normals_of(mesh);
+    normals.insert(normals.end(), faces.begin(), faces.end());
   }
   for (uint32_t i = 0; i < scene_->instances.size(); ++i) {
     const Instance& instance = scene_->instances[i];
@@ -165,16 +216,14 @@ void GpuScene::make_frame_set() {
   };
   frame_buffer_ = host(1, sizeof(FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   lights_ = host(scene_->lights.size(), sizeof(LightData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  faces_buffer_ = host(faces_.size(), sizeof(FaceData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   instances_ = host(scene_->instances.size(), sizeof(InstanceData), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
 
-  const Buffer* buffers[] = {&frame_buffer_, &lights_,           &faces_buffer_, &instances_,
-                             &materials_,    &triangle_normals_, &positions_,    &indices_};
-  constexpr uint32_t kUniformBuffers = 3;  // frame, lights, faces; storage buffers follow
+  const Buffer* buffers[] = {&frame_buffer_,     &lights_,    &instances_, &materials_,
+                             &triangle_normals_, &positions_, &indices_};
+  constexpr uint32_t kUniformBuffers = 2;  // frame, lights; storage buffers follow
   const uint64_t most = device_->limits().maxUniformBufferRange;
-  if (lights_.size() > most || faces_buffer_.size() > most)
-    fail(fmt::format("{} lights with {} shadow-map faces are more than '{}' can hold", scene_->lights.size(),
-                     faces_.size(), device_->info().name),
+  if (lights_.size() > most)
+    fail(fmt::format("{} lights are more than '{}' can hold", scene_->lights.size(), device_->info().name),
          scene_->file.string());
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < std::size(buffers); ++i)
@@ -232,20 +281,35 @@ void GpuScene::pose(double seconds, bool first) {
   if (!moving_) return;
   const Pose pose = pose_at(*moving_, seconds);
   for (size_t i = 0; i < pose.instances.size(); ++i) {
-    casters_changed_ = casters_changed_ || pose.instances[i] != moving_->instances[i].world_from_object;
+    const Instance& instance = moving_->instances[i];
+    casters_changed_ = casters_changed_ || pose.instances[i] != instance.world_from_object ||
+                       pose.visible[i] != instance.visible;
     draws_[i].mirrored = is_mirrored(pose.instances[i]);
   }
   for (size_t i = 0; i < pose.lights.size(); ++i)
-    if (pose.lights[i] != moving_->lights[i].world_from_light) lights_changed_[i] = true;
+    if (pose.lights[i] != moving_->lights[i].world_from_light ||
+        pose.intensities[i] != moving_->lights[i].intensity)
+      lights_changed_[i] = true;
+  for (const PosedMaterial& m : pose.materials)
+    casters_changed_ = casters_changed_ || m.base_color != moving_->materials[m.material].base_color ||
+                       m.alpha_cutoff != moving_->materials[m.material].alpha_cutoff;
+  for (const PosedMesh& m : pose.meshes)
+    casters_changed_ = casters_changed_ || !same(m.shape, moving_->meshes[m.mesh]);
   apply(pose, *moving_);
+  if (casters_changed_) update_meshes(pose);
 }
 
-// The faces hold all casters, wherever they have gone.
-void GpuScene::fit_faces() {
-  const std::vector<LightFace> faces = fit_.faces(*scene_);
-  for (size_t i = 0; i < faces.size(); ++i)
-    if (!same(faces[i], faces_[i])) lights_changed_[faces[i].light] = true;
-  faces_ = faces;
+// What apply() has changed of meshes and materials.
+void GpuScene::update_meshes(const Pose& pose) {
+  Rewrite rewrite;
+  for (const PosedMesh& posed : pose.meshes) {
+    const Mesh& mesh = moving_->meshes[posed.mesh];
+    rewrite.add(positions_, first_vertex_[posed.mesh], mesh.positions);
+    rewrite.add(attributes_, first_vertex_[posed.mesh], attributes_of(mesh));
+    rewrite.add(triangle_normals_, first_triangle_[posed.mesh], normals_of(mesh));
+  }
+  if (!pose.materials.empty()) rewrite.add(materials_, 0, material_data(*moving_));
+  rewrite.run(device_);
 }
 
 void GpuScene::update(const FrameView& view, double seconds, uint32_t frame_index) {
@@ -254,7 +318,6 @@ void GpuScene::update(const FrameView& view, double seconds, uint32_t frame_inde
   const auto any_light = [this] {
     return std::find(lights_changed_.begin(), lights_changed_.end(), true) != lights_changed_.end();
   };
-  if (moving_ && (casters_changed_ || any_light())) fit_faces();
 
   const Camera& camera = scene_->cameras.at(view.camera);
   const Camera& previous = first ? camera : camera_;
@@ -262,11 +325,10 @@ void GpuScene::update(const FrameView& view, double seconds, uint32_t frame_inde
   const bool eye_moved = first || eye != glm::dvec3(previous.world_from_camera[3]);
   camera_changed_ = first || camera.world_from_camera != previous.world_from_camera || !same(view, view_);
   frame_ = frame_data(camera, previous, view.width, view.height, view.reversed_z,
-                      uint32_t(scene_->lights.size()), uint32_t(faces_.size()), frame_index);
+                      uint32_t(scene_->lights.size()), frame_index);
   std::memcpy(frame_buffer_.bytes().data(), &frame_, sizeof(frame_));
   if (eye_moved || any_light()) {  // positions are relative to the eye
-    write(lights_, light_data(*scene_, faces_, eye));
-    write(faces_buffer_, face_data(faces_, eye));
+    write(lights_, light_data(*scene_, eye));
   }
   if (eye_moved || casters_changed_) write(instances_, instance_data(*scene_, first_triangle_, eye));
   camera_ = camera;

@@ -4,9 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "engine/light/light_face.h"
-#include "engine/light/light_fit.h"
 #include "engine/render/frame_data.h"
+#include "engine/render/raster.h"
 #include "engine/scene/scene.h"
 #include "engine/vulkan/handle.h"
 #include "engine/vulkan/resources.h"
@@ -14,12 +13,7 @@
 
 namespace gnomon {
 
-struct Draw {  // one instance of one mesh
-  uint32_t first_index, index_count;
-  int32_t vertex_offset;
-  uint32_t instance, material;
-  bool double_sided, alpha_masked, mirrored, watertight;
-};
+struct Pose;  // engine/scene/animation.h
 
 struct FrameView {                 // what a frame shows
   uint32_t camera = 0;             // index into Scene::cameras
@@ -36,7 +30,6 @@ class GpuScene {
 
   const Scene& scene() const { return *scene_; }  // as update() has posed it
   const std::vector<Draw>& draws() const { return draws_; }
-  const std::vector<LightFace>& faces() const { return faces_; }
   const FrameData& frame() const { return frame_; }
   const Camera& camera() const { return scene_->cameras[view_.camera]; }  // of the frame
 
@@ -52,15 +45,15 @@ class GpuScene {
   uint32_t first_vertex(uint32_t mesh) const { return first_vertex_[mesh]; }
   uint32_t first_triangle(uint32_t mesh) const { return first_triangle_[mesh]; }
 
-  // Moves the scene to a time of its animation, fits the light faces to it, and writes what has changed; the
+  // Moves the scene to a time of its animation, and writes what has changed; the
   // device must not be reading it. Frame 0 begins a sequence: it has no previous frame.
   void update(const FrameView& view, double seconds, uint32_t frame_index);
 
   // Since the frame before; all true in frame 0.
-  bool casters_changed() const { return casters_changed_; }  // some instance has moved
+  bool casters_changed() const { return casters_changed_; }  // some instance has moved or changed its shape
   bool light_changed(uint32_t light) const {
     return lights_changed_[light];
-  }                                                        // it has moved, or its faces' ranges are others
+  }                                                        // it has moved, or its intensity
   bool camera_changed() const { return camera_changed_; }  // its place or the view's shape
 
  private:
@@ -69,14 +62,12 @@ class GpuScene {
   void make_frame_set();
   void make_material_sets();
   void pose(double seconds, bool first);
-  void fit_faces();
+  void update_meshes(const Pose& pose);
 
   std::shared_ptr<Device> device_;
   std::shared_ptr<Scene> moving_;  // null: nothing moves
   std::shared_ptr<const Scene> scene_;
   std::vector<Draw> draws_;
-  LightFit fit_;
-  std::vector<LightFace> faces_;
   Camera camera_;  // of the frame before
   FrameView view_;
   bool casters_changed_ = true, camera_changed_ = true;
@@ -84,8 +75,8 @@ class GpuScene {
   std::vector<uint32_t> first_vertex_, first_triangle_;
   FrameData frame_{};
   Buffer positions_, attributes_, indices_, triangle_normals_, materials_;
-  Buffer frame_buffer_, lights_, faces_buffer_, instances_;  // host-visible
-  std::vector<GpuImage> textures_;                           // last one: plain white
+  Buffer frame_buffer_, lights_, instances_;  // host-visible
+  std::vector<GpuImage> textures_;            // last one: plain white
   std::vector<Handle<VkSampler>> samplers_;
   Handle<VkDescriptorPool> pool_;
   Handle<VkDescriptorSetLayout> frame_layout_, material_layout_;

@@ -1,3 +1,4 @@
+// Generates the GLSL text of a pass' bindings, parameter block and defines.
 #include "engine/render/preamble.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,6 @@
 #include <cstring>
 
 #include "engine/base/error.h"
-#include "engine/light/light_face.h"
 
 namespace gnomon {
 namespace {
@@ -66,12 +66,17 @@ std::string sampled_text(const ShaderPort& shown, bool constant) {
   std::string text = fmt::format("layout(set = 1, binding = {}) uniform {}sampler2D{} {};\n", shown.binding,
                                  f.prefix, p.array ? "Array" : "", p.name);
   const char* pixel = constant ? "ivec2(0)" : "p";
+  const char* layer = constant ? "0" : "layer";
   if (p.array)
     text += fmt::format("{}vec4 {}_at(ivec2 p, int layer) {{ return texelFetch({}, ivec3({}, {}), 0); }}\n",
-                        f.prefix, p.name, p.name, pixel, constant ? "0" : "layer");
+                        f.prefix, p.name, p.name, pixel, layer);
   else
     text += fmt::format("{}vec4 {}_at(ivec2 p) {{ return texelFetch({}, {}, 0); }}\n", f.prefix, p.name,
                         p.name, pixel);
+  if (p.array && p.image.mips > 1)
+    text += fmt::format(
+        "{}vec4 {}_at(ivec2 p, int layer, int level) {{ return texelFetch({}, ivec3({}, {}), {}); }}\n",
+        f.prefix, p.name, p.name, pixel, layer, constant ? "0" : "level");
   return text;
 }
 
@@ -79,12 +84,17 @@ std::string storage_text(const ShaderPort& shown) {
   const Port& p = *shown.port;
   const bool reads = has(p.access, Access::storage_read), writes = has(p.access, Access::storage_write);
   const char* qualifier = reads && writes ? "" : reads ? "readonly " : "writeonly ";
+  if (has(p.access, Access::uniform))
+    return fmt::format("layout(set = 1, binding = {}, std140) uniform {}_block {{ {} {}[{}]; }};\n",
+                       shown.binding, p.name, p.buffer.glsl, p.name, p.buffer.count);
   if (p.is_buffer)
     return fmt::format("layout(set = 1, binding = {}, std430) {}buffer {}_block {{ {} {}[]; }};\n",
                        shown.binding, qualifier, p.name, p.buffer.glsl, p.name);
   const GlslFormat f = glsl_format(p.image.format);
-  return fmt::format("layout(set = 1, binding = {}, {}) uniform {}{}image2D{} {};\n", shown.binding,
-                     f.qualifier, qualifier, f.prefix, p.array ? "Array" : "", p.name);
+  const uint32_t levels = storage_levels(p);
+  const std::string number = levels > 1 ? fmt::format("[{}]", levels) : std::string();
+  return fmt::format("layout(set = 1, binding = {}, {}) uniform {}{}image2D{} {}{};\n", shown.binding,
+                     f.qualifier, qualifier, f.prefix, p.array ? "Array" : "", p.name, number);
 }
 
 bool in_block(const ParamSpec& spec) {
@@ -93,10 +103,16 @@ bool in_block(const ParamSpec& spec) {
 
 }  // namespace
 
+uint32_t storage_levels(const Port& port) {
+  const bool both = has(port.access, Access::storage_read) && has(port.access, Access::storage_write);
+  return both && !port.is_buffer ? port.image.mips : 1;
+}
+
 std::vector<ShaderPort> shader_ports(const Declaration& declaration) {
   std::vector<ShaderPort> shown;
   for (const Port& port : declaration.ports()) {
-    constexpr Access kShown = Access::sampled | Access::storage_read | Access::storage_write;
+    constexpr Access kShown =
+        Access::sampled | Access::uniform | Access::storage_read | Access::storage_write;
     const bool connected =
         !port.optional || (port.is_buffer ? port.buffer.count > 0 : port.image.format != VK_FORMAT_UNDEFINED);
     if (has(port.access, kShown) && connected) shown.push_back({&port, uint32_t(shown.size())});
@@ -104,20 +120,24 @@ std::vector<ShaderPort> shader_ports(const Declaration& declaration) {
   return shown;
 }
 
-std::string light_kind_text(const std::vector<LightFace>& faces) {
-  const auto directional =
-      std::count_if(faces.begin(), faces.end(), [](const LightFace& f) { return f.orthographic; });
-  if (faces.empty() || (directional != 0 && directional != std::ssize(faces))) return {};
+std::string light_kind_text(const std::vector<Light>& lights) {
+  const auto directional = std::count_if(
+      lights.begin(), lights.end(), [](const Light& light) { return light.type == LightType::directional; });
+  if (lights.empty() || (directional != 0 && directional != std::ssize(lights))) return {};
   return directional == 0 ? "#define NO_DIRECTIONAL_LIGHTS 1\n" : "#define ALL_DIRECTIONAL_LIGHTS 1\n";
 }
 
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs) {
   // Constants rather than loads: drivers unroll loops over them and keep loads in those loops uniform.
-  std::string text = fmt::format("#define LIGHT_COUNT {}\n#define FACE_COUNT {}\n",
-                                 declaration.setting().lights, declaration.setting().map_faces);
+  std::string text = fmt::format("#define LIGHT_COUNT {}\n", declaration.setting().lights);
   const auto shown = shader_ports(declaration);
   for (const ShaderPort& port : shown) {
     text += fmt::format("#define HAS_{} 1\n", upper(port.port->name));
+    const bool input = port.port->direction == Direction::in || port.port->direction == Direction::inout;
+    if (port.port->is_buffer && input)
+      text += fmt::format("#define {}_COUNT {}\n", upper(port.port->name), port.port->buffer.count);
+    if (port.port->is_buffer && !port.port->buffer.glsl_file.empty())
+      text += fmt::format("#include \"{}\"\n", port.port->buffer.glsl_file);
     const auto constant = constant_inputs.find(port.port->name);
     text += has(port.port->access, Access::sampled)
                 ? sampled_text(port, constant != constant_inputs.end() && constant->second)

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/graph/pass.h"
-#include "engine/light/light_face.h"
 #include "engine/scene/scene.h"
 #include "engine/vulkan/shader.h"
 
@@ -19,14 +18,20 @@ struct ShaderPort {
 };
 std::vector<ShaderPort> shader_ports(const Declaration& declaration);
 
+// Mip levels that shaders see of a storage image, each an element of an array with constant indices: all of
+// one that the pass both reads and writes, so that it can make one level from another; otherwise the first
+// alone.
+uint32_t storage_levels(const Port& port);
+
 // Text: one declaration per port, named as the port. Sampled images `x` get `x_at(ivec2)` (arrays:
-// `x_at(ivec2, int layer)`), which read the single texel of an input that was folded to a constant. Integer
-// and number parameters are `params.name`. LIGHT_COUNT and FACE_COUNT are the scene's.
+// `x_at(ivec2, int layer)`), which read the single texel of an input that was folded to a constant; arrays
+// with mip levels `x_at(ivec2, int layer, int level)` too. Integer and number parameters are `params.name`. A
+// connected buffer `x` has X_COUNT elements; LIGHT_COUNT is the scene's.
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs);
 
 // NO_DIRECTIONAL_LIGHTS or ALL_DIRECTIONAL_LIGHTS where all lights are of one kind, so that shaders leave out
-// the other; empty otherwise. `faces`: of all lights' maps.
-std::string light_kind_text(const std::vector<LightFace>& faces);
+// the other; empty otherwise.
+std::string light_kind_text(const std::vector<Light>& lights);
 
 // Flags: NAME 0 or 1. Choices: NAME = index of the chosen, and NAME_CHOICE for each possible one.
 Defines parameter_defines(const Params& params);

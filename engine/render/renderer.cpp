@@ -1,3 +1,4 @@
+// Runs one graph on one scene, frame by frame, and measures it.
 #include "engine/render/renderer.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,10 @@
 #include "engine/plan/compile.h"
 #include "engine/render/context.h"
 #include "engine/render/device_plan.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/wide_spot.h"
 #include "engine/vulkan/handle.h"
 #include "engine/vulkan/readback.h"
 #include "engine/vulkan/timing.h"
@@ -27,6 +32,27 @@ double ms_since(Clock::time_point start) {
 constexpr uint32_t kMaxSections = 4096;  // in one submission; further ones count to the one before
 
 constexpr uint64_t kFenceTimeoutNs = 600ull * 1000 * 1000 * 1000;
+
+// Stands where there is no scene: nothing to see, for a camera and a light that have no say in the result.
+std::shared_ptr<const Scene> no_scene() {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.cameras.emplace_back();
+  scene.lights.emplace_back();
+  scene.bounds.add(glm::dvec3(0.0));
+  return std::make_shared<const Scene>(std::move(scene));
+}
+
+// Of such a scene nothing can be told.
+SceneFacts facts_of_nothing() {
+  SceneFacts facts;
+  facts.lights = 1;
+  facts.shadowless = {{}};
+  facts.light_moves = {false};
+  facts.light_size = {0};
+  facts.penumbra = {0};
+  return promising_nothing(facts);
+}
 
 }  // namespace
 
@@ -77,23 +103,28 @@ struct Renderer::Impl {
 
 Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, const Graph& graph,
                      const RenderSettings& r)
-    : device(std::move(d)), scene(std::move(s)), settings(r), gpu_scene(device, scene) {
+    : device(std::move(d)), scene(s ? std::move(s) : no_scene()), settings(r), gpu_scene(device, scene) {
   if (settings.camera >= scene->cameras.size())
     fail(fmt::format("the scene has {} camera(s), number {} is asked for", scene->cameras.size(),
                      settings.camera),
          scene->file.string(), "--camera", "cameras are counted from 0");
   const Camera& camera = scene->cameras[settings.camera];
-  const Declaration::Setting setting{{settings.width, settings.height},
-                                     uint32_t(scene->lights.size()),
-                                     uint32_t(gpu_scene.faces().size()),
-                                     settings.memory};
+  Declaration::Setting setting{{settings.width, settings.height},
+                               uint32_t(scene->lights.size()),
+                               settings.memory,
+                               {},
+                               scene_sizes(*scene)};
+  for (const Light& light : scene->lights) setting.light_types.push_back(view_type(light));
   CompileOptions options;
   options.alias = settings.alias;
   options.keep_all = settings.keep_all;
   options.captures = settings.captures;
   options.memory = [this](const Resource& resource) { return device_need(device, resource); };
-  const double aspect = camera.aspect.value_or(double(settings.width) / settings.height);
-  const SceneFacts facts_of_view = scene_facts(*scene, camera, aspect, settings.height);
+  const double aspect = double(settings.width) / settings.height;
+  if (const std::string warning = aspect_warning(camera, aspect); !warning.empty())
+    warnings.push_back(warning);
+  const SceneFacts facts_of_view =
+      scene->meshes.empty() ? facts_of_nothing() : scene_facts(*scene, camera, aspect, settings.height);
   plan =
       compile(graph, setting, settings.keep_all ? promising_nothing(facts_of_view) : facts_of_view, options);
   gpu_scene.update(view(), 0, 0);

@@ -11,23 +11,12 @@
 
 #include "engine/graph/graph.h"
 #include "engine/image/image.h"
+#include "engine/render/left_out.h"
+#include "engine/render/render_settings.h"
 #include "engine/scene/scene.h"
 #include "engine/vulkan/device_info.h"
 
 namespace gnomon {
-
-struct RenderSettings {
-  uint32_t width = 1280, height = 720;  // pixels
-  uint32_t camera = 0;                  // index into Scene::cameras
-  bool reversed_z = true;               // camera depth: reversed (1 near, 0 at infinity) or standard
-  bool alias = true;                    // transient memory aliasing
-  bool keep_all = false;                // leave nothing out
-  uint64_t memory = uint64_t{1} << 30;  // bytes that a technique's shadow maps may take at a time
-  double frame_seconds = 1.0 / 30;      // of the scene's time, from frame to frame of Renderer::play()
-  std::vector<std::string> captures;    // "node.port" besides the outputs
-  // What passes of type image_source show, by their id: the first channel, of the viewport's size.
-  std::map<std::string, std::shared_ptr<const Image>> images;
-};
 
 enum class TimingMode {
   none,        // no timestamps at all: what a frame costs
@@ -52,15 +41,11 @@ struct FrameTiming {
 struct MemoryUse {
   uint64_t peak_bytes = 0, transient_bytes = 0, transient_bytes_without_aliasing = 0;
 };
-struct LeftOutPass {
-  std::string pass;
-  std::string part;  // of a pass that runs; empty: all of it
-  std::string reason;
-};
 
 class Renderer {
  public:
-  // Compiles the graph, its shaders and uploads the scene. Error for what cannot run here.
+  // Compiles the graph, its shaders and uploads the scene; without one (nullptr) for graphs whose passes draw
+  // none. Error for what cannot run here.
   Renderer(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, const Graph& graph,
            const RenderSettings& settings);
   ~Renderer();

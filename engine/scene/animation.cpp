@@ -1,3 +1,4 @@
+// Interpolates key frames and poses a scene's node tree at a time.
 #include "engine/scene/animation.h"
 
 #include <algorithm>
@@ -57,12 +58,26 @@ NodeTransform transform_at(const AnimatedNode& node, double seconds) {
 
 }  // namespace
 
-glm::dvec3 vector_at(const Track& track, double seconds) {
+glm::dvec4 values_at(const Track& track, double seconds) {
   const Segment s = segment_at(track.times, seconds);
   const glm::dvec4& from = value_of(track, s.before);
-  if (holds(track, s)) return glm::dvec3(from);
-  if (track.interpolation == Interpolation::cubic_spline) return glm::dvec3(spline(track, s));
-  return glm::dvec3(glm::mix(from, value_of(track, s.after), s.share));
+  if (holds(track, s)) return from;
+  if (track.interpolation == Interpolation::cubic_spline) return spline(track, s);
+  return glm::mix(from, value_of(track, s.after), s.share);
+}
+
+glm::dvec3 vector_at(const Track& track, double seconds) { return glm::dvec3(values_at(track, seconds)); }
+
+std::vector<double> weights_at(const WeightTrack& track, double seconds) {
+  // One weight after the other, as a track of its own.
+  const size_t parts = track.interpolation == Interpolation::cubic_spline ? 3 : 1;
+  std::vector<double> result(track.count);
+  Track one{track.interpolation, track.times, std::vector<glm::dvec4>(parts * track.times.size())};
+  for (size_t w = 0; w < track.count; ++w) {
+    for (size_t i = 0; i < one.values.size(); ++i) one.values[i].x = track.values[i * track.count + w];
+    result[w] = values_at(one, seconds).x;
+  }
+  return result;
 }
 
 glm::dquat rotation_at(const Track& track, double seconds) {
@@ -93,19 +108,81 @@ std::vector<glm::dmat4> node_transforms(const Animation& animation, double secon
   return world;
 }
 
+bool is_idle(const Animation& a) {
+  return a.instances.empty() && a.cameras.empty() && a.lights.empty() && a.blinking.empty() &&
+         a.changing_lights.empty() && a.changing_materials.empty() && a.deformations.empty();
+}
+
+std::vector<bool> node_visibility(const Animation& animation, double seconds) {
+  std::vector<bool> visible;
+  visible.reserve(animation.nodes.size());
+  for (const AnimatedNode& node : animation.nodes) {
+    const bool itself = node.visibility ? values_at(*node.visibility, seconds).x != 0 : node.visible;
+    visible.push_back(itself && (!node.parent || visible[*node.parent]));
+  }
+  return visible;
+}
+
+Shape shape_at(const Deformation& deformation, const Animation& animation,
+               const std::vector<glm::dmat4>& world_from_node, double seconds,
+               std::span<const uint32_t> indices) {
+  std::vector<double> weights = deformation.weights;
+  if (deformation.node)
+    if (const auto& track = animation.nodes[*deformation.node].weights) weights = weights_at(*track, seconds);
+  std::vector<glm::dmat4> joints;
+  for (const Joint& joint : deformation.joints) joints.push_back(world_from_node[joint.node]);
+  return shape_of(deformation, weights, joints, indices);
+}
+
 double duration(const Animation& animation) {
   double last = 0;
-  for (const AnimatedNode& node : animation.nodes)
-    for (const std::optional<Track>* track : {&node.translation, &node.rotation, &node.scale})
-      if (*track) last = std::max(last, (*track)->times.back());
+  const auto reach = [&](const auto& track) {
+    if (track) last = std::max(last, track->times.back());
+  };
+  for (const AnimatedNode& node : animation.nodes) {
+    for (const auto* track : {&node.translation, &node.rotation, &node.scale, &node.visibility})
+      reach(*track);
+    reach(node.weights);
+  }
+  for (const ChangingLight& light : animation.changing_lights) reach(light.track);
+  for (const ChangingMaterial& material : animation.changing_materials)
+    reach(material.color), reach(material.cutoff);
   return last;
 }
 
+namespace {
+
+// What changes without moving.
+void change(const Scene& scene, const Animation& animation, const std::vector<glm::dmat4>& world,
+            double seconds, Pose& pose) {
+  const std::vector<bool> visible = node_visibility(animation, seconds);
+  for (const Attachment& a : animation.instances) pose.visible[a.target] = visible[a.node];
+  for (const BlinkingInstance& b : animation.blinking) pose.visible[b.instance] = visible[b.node];
+  for (const ChangingLight& light : animation.changing_lights) {
+    const double lit = light.track ? std::max(values_at(*light.track, seconds).x, 0.0) : light.intensity;
+    pose.intensities[light.light] = light.node && !visible[*light.node] ? 0.0 : lit;
+  }
+  for (const ChangingMaterial& m : animation.changing_materials)
+    pose.materials.push_back(
+        {m.material, m.color ? glm::clamp(glm::vec4(values_at(*m.color, seconds)), 0.0f, 1.0f) : m.base_color,
+         m.cutoff ? static_cast<float>(values_at(*m.cutoff, seconds).x) : m.alpha_cutoff});
+  for (const Deformation& d : animation.deformations)
+    pose.meshes.push_back({d.mesh, shape_at(d, animation, world, seconds, scene.meshes[d.mesh].indices)});
+}
+
+}  // namespace
+
 Pose pose_at(const Scene& scene, double seconds) {
   Pose pose;
-  for (const Instance& instance : scene.instances) pose.instances.push_back(instance.world_from_object);
+  for (const Instance& instance : scene.instances) {
+    pose.instances.push_back(instance.world_from_object);
+    pose.visible.push_back(instance.visible);
+  }
   for (const Camera& camera : scene.cameras) pose.cameras.push_back(camera.world_from_camera);
-  for (const Light& light : scene.lights) pose.lights.push_back(light.world_from_light);
+  for (const Light& light : scene.lights) {
+    pose.lights.push_back(light.world_from_light);
+    pose.intensities.push_back(light.intensity);
+  }
   if (!scene.animation) return pose;
   const Animation& animation = *scene.animation;
   const std::vector<glm::dmat4> world = node_transforms(animation, seconds);
@@ -115,14 +192,31 @@ Pose pose_at(const Scene& scene, double seconds) {
     pose.cameras[a.target] = rigid(world[a.node] * a.node_from_target);
   for (const Attachment& a : animation.lights)
     pose.lights[a.target] = rigid(world[a.node] * a.node_from_target);
+  change(scene, animation, world, seconds, pose);
   return pose;
 }
 
 void apply(const Pose& pose, Scene& scene) {
-  for (size_t i = 0; i < scene.instances.size(); ++i)
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
     scene.instances[i].world_from_object = pose.instances[i];
+    scene.instances[i].visible = pose.visible[i];
+  }
   for (size_t i = 0; i < scene.cameras.size(); ++i) scene.cameras[i].world_from_camera = pose.cameras[i];
-  for (size_t i = 0; i < scene.lights.size(); ++i) scene.lights[i].world_from_light = pose.lights[i];
+  for (size_t i = 0; i < scene.lights.size(); ++i) {
+    scene.lights[i].world_from_light = pose.lights[i];
+    scene.lights[i].intensity = pose.intensities[i];
+  }
+  for (const PosedMaterial& posed : pose.materials) {
+    scene.materials[posed.material].base_color = posed.base_color;
+    scene.materials[posed.material].alpha_cutoff = posed.alpha_cutoff;
+  }
+  for (const PosedMesh& posed : pose.meshes) {
+    Mesh& mesh = scene.meshes[posed.mesh];
+    mesh.positions = posed.shape.positions;
+    mesh.normals = posed.shape.normals;
+    mesh.bounds = {};
+    for (const glm::vec3& p : mesh.positions) mesh.bounds.add(glm::dvec3(p));
+  }
 }
 
 Scene posed(const Scene& scene, double seconds) {

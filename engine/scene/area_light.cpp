@@ -1,3 +1,4 @@
+// Shapes of area lights: areas, emission, and sample points on them.
 #include "engine/scene/area_light.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/sobol.h"
+#include "engine/image/srgb.h"
 #include "engine/scene/surface.h"
 
 namespace gnomon {
@@ -186,6 +188,26 @@ AreaLight polygon_light(std::vector<glm::dvec2> outline) {
   const glm::dvec2 half = half_size(outline);
   return {AreaLight::Shape::polygon, 2 * half.x, 2 * half.y, std::move(outline), {}};
 }
+
+bool has_size(const Light& light) {
+  if (!light.area) return false;
+  switch (light.type) {
+    case LightType::spot:
+      return true;
+    case LightType::point:
+      return light.area->shape == AreaLight::Shape::sphere;
+    case LightType::directional:
+      return light.area->shape == AreaLight::Shape::disc;
+  }
+  return false;
+}
+
+AreaLight angular_disc(double diameter) {
+  const double side = 2 * std::tan(0.5 * diameter);
+  return {AreaLight::Shape::disc, side, side, {}, {}};
+}
+
+double angular_diameter(const AreaLight& disc) { return 2 * std::atan(0.5 * disc.width); }
 
 glm::dvec2 place_on(const AreaLight& area, const glm::dvec2& u) {
   return (u - 0.5) * glm::dvec2(area.width, area.height);

@@ -2,7 +2,8 @@
 // Pure.
 //
 // "Local" is the light's own frame: x and y in world units, the light's centre at 0. A sphere stands for the
-// disc through its centre that faces -z; only the reference sees it as a body.
+// disc through its centre that faces -z; only the reference sees it as a body. A directional light's disc is
+// at distance 1: its local points are what directions towards it differ by from the light's own.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +27,17 @@ std::string outline_problem(const std::vector<glm::dvec2>& outline);
 // centred on the light that holds it.
 AreaLight polygon_light(std::vector<glm::dvec2> outline);
 
-// Has the light an area that counts? Only spot lights have; others shine from their centre alone.
+// Has the light a size, so that its shadows have penumbrae? A spot light with any shape, a point light with a
+// sphere, a directional light with a disc.
+bool has_size(const Light& light);
+// Is it an area in a plane that does not depend on the receiver, so that its points are lights of their own?
+// Spot lights with a size alone.
 inline bool shines_as_area(const Light& light) { return light.area && light.type == LightType::spot; }
+
+// The size of a directional light: the disc of an angular diameter, radians, in (0, pi).
+AreaLight angular_disc(double diameter);
+// Its inverse.
+double angular_diameter(const AreaLight& disc);
 
 // A point of the bounding rectangle. `u` in [0, 1] x [0, 1]; (0, 0) is the corner at -x, -y.
 glm::dvec2 place_on(const AreaLight& area, const glm::dvec2& u);
@@ -68,8 +78,8 @@ enum class AreaPattern {
 std::vector<glm::dvec2> area_points(const AreaLight& area, uint32_t n, AreaPattern pattern,
                                     uint32_t seed = 0);
 
-// The scene with every light's area `factor` times as wide and as high; 0: all are points. Error when the
-// factor is negative or not finite, or a light becomes larger than any number.
+// The scene with every light's area `factor` times as wide and as high, a directional light's disc too; 0:
+// all are points. Error when the factor is negative or not finite, or a light becomes larger than any number.
 Scene with_light_scale(Scene scene, double factor);
 
 // Maps [0, 1] x [0, 1] to the unit disc; keeps relative areas and neighbourhoods, so that a stratified set

@@ -1,8 +1,11 @@
+// Reads the values of glTF accessors, with every byte range checked first.
 #include "engine/scene/gltf_accessor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "engine/base/error.h"
 
@@ -128,38 +131,46 @@ struct Layout {
   size_t element() const { return static_cast<size_t>(components) * component_size(type); }
 };
 
-glm::vec4 element_at(const Strided& from, size_t index, const Layout& layout, glm::vec4 value) {
-  const unsigned char* bytes = from.data + index * from.stride;
+glm::vec4 element_at(const unsigned char* bytes, const Layout& layout, glm::vec4 value) {
   for (int c = 0; c < layout.components; ++c)
     value[c] = component(bytes + static_cast<size_t>(c) * component_size(layout.type), layout.type,
                          layout.normalized);
   return value;
 }
 
-void apply_sparse(const GltfFile& gltf, const tinygltf::Accessor& accessor, const Layout& layout,
-                  const glm::vec4& fill, const std::string& place, std::vector<glm::vec4>& values) {
-  const auto& sparse = accessor.sparse;
-  if (sparse.count < 0 || static_cast<size_t>(sparse.count) > values.size() ||
-      !is_index_type(sparse.indices.componentType) || sparse.indices.byteOffset < 0 ||
-      sparse.values.byteOffset < 0)
-    fail("the sparse part of its accessor is broken", gltf.file, place);
-  const size_t count = static_cast<size_t>(sparse.count);
-  const Strided where =
-      view_elements(gltf, sparse.indices.bufferView, static_cast<size_t>(sparse.indices.byteOffset), count,
-                    component_size(sparse.indices.componentType), place);
-  const Strided what =
-      view_elements(gltf, sparse.values.bufferView, static_cast<size_t>(sparse.values.byteOffset), count,
-                    layout.element(), place);
-  for (size_t i = 0; i < count; ++i) {
-    const uint32_t index = unsigned_component(where.data + i * where.stride, sparse.indices.componentType);
-    if (index >= values.size())
-      fail("sparse index " + std::to_string(index) + " is out of range", gltf.file, place);
-    values[index] = element_at(what, i, layout, fill);
-  }
+constexpr size_t max_elements = size_t{1} << 24;  // that an accessor without a buffer view may claim
+
+// glTF 2.0, 5.1.1: without a buffer view all elements are zeros, sparse ones apart.
+void check_claim(const GltfFile& gltf, int index, size_t count, const std::string& place) {
+  if (count > max_elements)
+    fail("accessor " + std::to_string(index) + " has no buffer view and claims " + std::to_string(count) +
+             " elements; at most " + std::to_string(max_elements) + " are read",
+         gltf.file, place);
 }
 
-constexpr size_t max_elements = size_t{1}
-                                << 28;  // bounds what a sparse accessor without a buffer view may claim
+// Calls set(index, value's bytes) for the sparse elements of an accessor with `count` elements.
+template <typename Set>
+void read_sparse(const GltfFile& gltf, const tinygltf::Accessor& accessor, size_t count, size_t element,
+                 const std::string& place, const Set& set) {
+  const auto& sparse = accessor.sparse;
+  if (!sparse.isSparse) return;
+  // Signed or not, as the version of tinygltf has it.
+  if (sparse.count < 0 || static_cast<size_t>(sparse.count) > count ||
+      !is_index_type(sparse.indices.componentType) || std::cmp_less(sparse.indices.byteOffset, 0) ||
+      std::cmp_less(sparse.values.byteOffset, 0))
+    fail("the sparse part of its accessor is broken", gltf.file, place);
+  const size_t changed = static_cast<size_t>(sparse.count);
+  const Strided where =
+      view_elements(gltf, sparse.indices.bufferView, static_cast<size_t>(sparse.indices.byteOffset), changed,
+                    component_size(sparse.indices.componentType), place);
+  const Strided what = view_elements(gltf, sparse.values.bufferView,
+                                     static_cast<size_t>(sparse.values.byteOffset), changed, element, place);
+  for (size_t i = 0; i < changed; ++i) {
+    const uint32_t index = unsigned_component(where.data + i * where.stride, sparse.indices.componentType);
+    if (index >= count) fail("sparse index " + std::to_string(index) + " is out of range", gltf.file, place);
+    set(index, what.data + i * what.stride);
+  }
+}
 
 }  // namespace
 
@@ -176,19 +187,32 @@ std::vector<glm::vec4> read_vectors(const GltfFile& gltf, int index, const std::
     const Strided from = view_elements(gltf, accessor.bufferView, accessor.byteOffset, accessor.count,
                                        layout.element(), place);
     values.resize(from.count);
-    for (size_t i = 0; i < from.count; ++i) values[i] = element_at(from, i, layout, fill);
+    for (size_t i = 0; i < from.count; ++i) values[i] = element_at(from.data + i * from.stride, layout, fill);
   } else {
-    // glTF 2.0, 5.1.1: zeros; only of use as the base of sparse values.
-    if (!accessor.sparse.isSparse)
-      fail("accessor " + std::to_string(index) + " has no buffer view", gltf.file, place);
-    if (accessor.count > max_elements)
-      fail("accessor " + std::to_string(index) + " is too large", gltf.file, place);
+    check_claim(gltf, index, accessor.count, place);
     glm::vec4 zero = fill;
     for (int c = 0; c < layout.components; ++c) zero[c] = 0.0f;
     values.assign(accessor.count, zero);
   }
-  if (accessor.sparse.isSparse) apply_sparse(gltf, accessor, layout, fill, place, values);
+  read_sparse(gltf, accessor, values.size(), layout.element(), place,
+              [&](uint32_t i, const unsigned char* bytes) { values[i] = element_at(bytes, layout, fill); });
   return values;
+}
+
+std::vector<glm::dmat4> read_matrices(const GltfFile& gltf, int index, const std::string& place) {
+  const tinygltf::Accessor& accessor = find_accessor(gltf, index, place);
+  if (accessor.type != TINYGLTF_TYPE_MAT4 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+    fail("accessor " + std::to_string(index) + " must hold 4 x 4 matrices of floats", gltf.file, place);
+  const Strided from = view_elements(gltf, accessor.bufferView, accessor.byteOffset, accessor.count,
+                                     16 * sizeof(float), place);
+  std::vector<glm::dmat4> matrices(from.count);
+  for (size_t i = 0; i < from.count; ++i)
+    for (int k = 0; k < 16; ++k) {
+      const float value = load<float>(from.data + i * from.stride + sizeof(float) * static_cast<size_t>(k));
+      if (!std::isfinite(value)) fail("matrix " + std::to_string(i) + " is not finite", gltf.file, place);
+      matrices[i][k / 4][k % 4] = value;
+    }
+  return matrices;
 }
 
 std::vector<uint32_t> read_indices(const GltfFile& gltf, int index, const std::string& place,
@@ -196,17 +220,26 @@ std::vector<uint32_t> read_indices(const GltfFile& gltf, int index, const std::s
   const tinygltf::Accessor& accessor = find_accessor(gltf, index, place);
   if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType))
     fail("indices must be unsigned scalars", gltf.file, place);
-  if (accessor.sparse.isSparse) fail("sparse indices are not supported", gltf.file, place);
-  const Strided from = view_elements(gltf, accessor.bufferView, accessor.byteOffset, accessor.count,
-                                     component_size(accessor.componentType), place);
-  std::vector<uint32_t> values(from.count);
-  for (size_t i = 0; i < from.count; ++i) {
-    values[i] = unsigned_component(from.data + i * from.stride, accessor.componentType);
+  const size_t size = component_size(accessor.componentType);
+  std::vector<uint32_t> values;
+  if (accessor.bufferView >= 0) {
+    const Strided from =
+        view_elements(gltf, accessor.bufferView, accessor.byteOffset, accessor.count, size, place);
+    values.resize(from.count);
+    for (size_t i = 0; i < from.count; ++i)
+      values[i] = unsigned_component(from.data + i * from.stride, accessor.componentType);
+  } else {
+    check_claim(gltf, index, accessor.count, place);
+    values.assign(accessor.count, 0);
+  }
+  read_sparse(gltf, accessor, values.size(), size, place, [&](uint32_t i, const unsigned char* bytes) {
+    values[i] = unsigned_component(bytes, accessor.componentType);
+  });
+  for (size_t i = 0; i < values.size(); ++i)
     if (values[i] >= vertices)
       fail("index " + std::to_string(values[i]) + " at " + std::to_string(i) +
                " is out of range; there are " + std::to_string(vertices) + " vertices",
            gltf.file, place);
-  }
   return values;
 }
 

@@ -16,6 +16,9 @@ std::vector<glm::vec4> read_vectors(const GltfFile& gltf, int accessor, const st
                                     const std::vector<int>& components,
                                     const glm::vec4& fill = glm::vec4(0.0f));
 
+// 4 x 4 matrices of floats, column-major, all finite.
+std::vector<glm::dmat4> read_matrices(const GltfFile& gltf, int accessor, const std::string& place);
+
 // An index accessor (unsigned byte, short or int scalars); every value must be < `vertices`.
 std::vector<uint32_t> read_indices(const GltfFile& gltf, int accessor, const std::string& place,
                                    size_t vertices);

@@ -1,3 +1,4 @@
+// Repairs triangle meshes: drops bad triangles and unused vertices, mends normals.
 #include "engine/scene/mesh_clean.h"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ void keep(std::vector<T>& values, const std::vector<uint32_t>& kept) {
   values.resize(kept.size());
 }
 
-void drop_unused_vertices(Mesh& mesh) {
+// `origins`: may be null.
+void drop_unused_vertices(Mesh& mesh, std::vector<uint32_t>* origins) {
   std::vector<uint32_t> place(mesh.positions.size(), 0), kept;
   for (const uint32_t i : mesh.indices) place[i] = 1;
   for (uint32_t i = 0; i < place.size(); ++i) {
@@ -46,6 +48,7 @@ void drop_unused_vertices(Mesh& mesh) {
   keep(mesh.normals, kept);
   keep(mesh.uvs, kept);
   keep(mesh.colors, kept);
+  if (origins != nullptr) keep(*origins, kept);
 }
 
 auto key(const glm::vec3& p) { return std::make_tuple(p.x, p.y, p.z); }
@@ -64,6 +67,17 @@ std::vector<uint32_t> weld(const std::vector<glm::vec3>& positions) {
   return id;
 }
 
+// Moeller and Trumbore 1997, one-sided in t; the ray's direction is fixed and matches no axis.
+bool crosses(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& a, const glm::dvec3& b,
+             const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a, ac = c - a, p = glm::cross(direction, ac);
+  const double determinant = glm::dot(ab, p);
+  if (determinant == 0.0) return false;
+  const glm::dvec3 s = origin - a, q = glm::cross(s, ab);
+  const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && glm::dot(ac, q) / determinant > 0;
+}
+
 template <typename T>
 std::vector<T> split(const std::vector<T>& values, const std::vector<uint32_t>& indices) {
   std::vector<T> result;
@@ -73,9 +87,7 @@ std::vector<T> split(const std::vector<T>& values, const std::vector<uint32_t>& 
   return result;
 }
 
-}  // namespace
-
-DroppedTriangles drop_bad_triangles(Mesh& mesh) {
+DroppedTriangles drop_triangles(Mesh& mesh, std::vector<uint32_t>* origins) {
   DroppedTriangles dropped;
   size_t out = 0;
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -83,7 +95,7 @@ DroppedTriangles drop_bad_triangles(Mesh& mesh) {
     const glm::vec3 &pa = mesh.positions[a], &pb = mesh.positions[b], &pc = mesh.positions[c];
     if (!is_finite(pa) || !is_finite(pb) || !is_finite(pc)) {
       ++dropped.nonfinite;
-    } else if (!has_area(pa, pb, pc)) {
+    } else if (origins != nullptr ? a == b || b == c || c == a : !has_area(pa, pb, pc)) {
       ++dropped.degenerate;
     } else {
       mesh.indices[out] = a, mesh.indices[out + 1] = b, mesh.indices[out + 2] = c;
@@ -91,8 +103,18 @@ DroppedTriangles drop_bad_triangles(Mesh& mesh) {
     }
   }
   mesh.indices.resize(out);
-  drop_unused_vertices(mesh);
+  drop_unused_vertices(mesh, origins);
   return dropped;
+}
+
+}  // namespace
+
+DroppedTriangles drop_bad_triangles(Mesh& mesh) { return drop_triangles(mesh, nullptr); }
+
+DroppedTriangles drop_bad_triangles(Mesh& mesh, std::vector<uint32_t>& origins) {
+  origins.resize(mesh.positions.size());
+  std::iota(origins.begin(), origins.end(), 0u);
+  return drop_triangles(mesh, &origins);
 }
 
 void make_flat_normals(Mesh& mesh) {
@@ -103,8 +125,15 @@ void make_flat_normals(Mesh& mesh) {
   mesh.normals.resize(mesh.positions.size());
   for (size_t i = 0; i + 2 < mesh.positions.size(); i += 3) {
     const glm::dvec3 n = face_vector(mesh.positions[i], mesh.positions[i + 1], mesh.positions[i + 2]);
-    std::fill_n(mesh.normals.begin() + static_cast<std::ptrdiff_t>(i), 3, glm::vec3(glm::normalize(n)));
+    const bool area = glm::dot(n, n) > 0;  // always, but for a shape that changes
+    std::fill_n(mesh.normals.begin() + static_cast<std::ptrdiff_t>(i), 3,
+                area ? glm::vec3(glm::normalize(n)) : glm::vec3(0, 1, 0));
   }
+}
+
+void make_flat_normals(Mesh& mesh, std::vector<uint32_t>& origins) {
+  origins = split(origins, mesh.indices);
+  make_flat_normals(mesh);
 }
 
 void repair_normals(Mesh& mesh) {
@@ -194,6 +223,18 @@ bool is_planar(const Mesh& mesh, glm::dvec3& point, glm::dvec3& normal) {
   for (const glm::vec3& p : mesh.positions)
     if (std::abs(glm::dot(glm::dvec3(p) - point, normal)) > limit) return false;
   return true;
+}
+
+bool is_inside(const Mesh& mesh, const glm::dvec3& point) {
+  if (glm::any(glm::lessThan(point, mesh.bounds.min)) || glm::any(glm::greaterThan(point, mesh.bounds.max)))
+    return false;
+  const glm::dvec3 direction(0.5377, 0.7713, 0.3401);
+  size_t crossings = 0;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    crossings += crosses(point, direction, glm::dvec3(mesh.positions[mesh.indices[i]]),
+                         glm::dvec3(mesh.positions[mesh.indices[i + 1]]),
+                         glm::dvec3(mesh.positions[mesh.indices[i + 2]]));
+  return crossings % 2 == 1;
 }
 
 Mesh mirrored(const Mesh& mesh) {

@@ -18,10 +18,14 @@ struct DroppedTriangles {
 // height below 1e-10 of the longest edge, which float positions reach only when the three points are
 // collinear to rounding. Then drops vertices that no triangle uses.
 DroppedTriangles drop_bad_triangles(Mesh& mesh);
+// The same for a mesh whose shape changes: of those without area only the ones that never have any go, which
+// use a vertex twice. `origins`: where each vertex was before, as make_flat_normals() too keeps it.
+DroppedTriangles drop_bad_triangles(Mesh& mesh, std::vector<uint32_t>& origins);
 
 // Normals of the faces; vertices are split so that every triangle has its own three (glTF 2.0, 3.7.2.1: flat
 // normals when a file has none).
 void make_flat_normals(Mesh& mesh);
+void make_flat_normals(Mesh& mesh, std::vector<uint32_t>& origins);
 
 // Unit length; a normal that is zero or not finite becomes the area-weighted mean of its vertex's faces.
 void repair_normals(Mesh& mesh);
@@ -38,6 +42,10 @@ uint64_t count_duplicate_vertices(const Mesh& mesh);
 
 // All vertices lie in one plane, within 1e-6 of the mesh's size. `normal`: unit, object space.
 bool is_planar(const Mesh& mesh, glm::dvec3& point, glm::dvec3& normal);
+
+// Does a ray from the point cross the mesh an odd number of times? Then it is inside, if the mesh is
+// watertight.
+bool is_inside(const Mesh& mesh, const glm::dvec3& point);
 
 // The same shape with object space mirrored in x, and triangles turned so that counter-clockwise stays the
 // front.

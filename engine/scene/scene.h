@@ -29,7 +29,8 @@ struct Mesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3>
       normals;  // as many as positions, unit length (made from the faces when the file has none)
-  std::vector<glm::vec2> uvs;     // as many as positions (zero when the file has none)
+  std::vector<glm::vec2> uvs;     // of the material's texture, transformed as it says; as many as positions
+                                  // (zero when the file has none)
   std::vector<glm::vec4> colors;  // COLOR_0, linear; as many as positions, or empty
   std::vector<uint32_t> indices;  // 3 per triangle, counter-clockwise is front
   uint32_t material = 0;
@@ -38,11 +39,14 @@ struct Mesh {
   size_t triangles() const { return indices.size() / 3; }
 };
 
+enum class Wrap { clamp, repeat, mirror };  // beyond the edges of a texture
+
 struct Texture {  // 8-bit sRGB RGBA, row 0 at the top (glTF's v = 0)
   std::string name;
   uint32_t width = 1, height = 1;
   std::vector<uint8_t> rgba;
-  bool repeat_u = true, repeat_v = true, nearest = false;
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  bool nearest = false;
 };
 
 struct Material {
@@ -58,22 +62,30 @@ struct Instance {
   std::string name;
   uint32_t mesh = 0;
   glm::dmat4 world_from_object{1.0};
-  bool moving = false;  // some animation moves it
+  bool moving = false;  // some animation moves it, or changes its mesh or its visibility
+  bool visible = true;  // hidden ones neither show nor cast shadows
 };
 
-struct Camera {  // right-handed, looks along -z; always projected with an infinite far plane
+struct Camera {  // right-handed, looks along -z
   std::string name;
   glm::dmat4 world_from_camera{1.0};  // rigid
   double fov_y = 0.7853981633974483;  // radians
   double near = 0.1;                  // world units
+  std::optional<double> far;          // world units; absent: no limit
   std::optional<double> aspect;       // width / height; absent: the viewport's
+  std::optional<glm::dvec2> span;     // orthographic: half width and height, world units
   bool moving = false;                // some animation moves it
 };
 
+// Half width and height of what an image of that aspect (width / height) shows of a camera: tangents, or
+// world units of an orthographic one. A camera of another aspect is wholly in the image, its shapes
+// unchanged.
+glm::dvec2 half_extent(const Camera& camera, double image_aspect);
+
 enum class LightType { spot, point, directional };
 
-// A planar shape in the light's local x-y plane, centred on the light, that emits along its local -z. A
-// sphere is the disc that faces -z.
+// Of a spot light a shape in its local x-y plane that emits along -z (a sphere: the disc that faces -z), of a
+// point light a sphere, of a directional light the disc that it is seen as, on the plane at distance 1.
 struct AreaLight {
   enum class Shape { rectangle, disc, sphere, polygon } shape = Shape::rectangle;
   double width = 0, height = 0;      // world units, of the bounding rectangle
@@ -95,7 +107,7 @@ struct Light {  // shines along its local -z (spot, directional)
   bool moving = false;                  // some animation moves it
 };
 
-struct SceneWarnings {  // counted, so that a usable scene with flaws is used and its flaws are told
+struct SceneWarnings {  // counted, so that a usable scene with flaws is used and its flaws are reported
   uint64_t degenerate_triangles = 0, nonfinite_triangles = 0, duplicate_vertices = 0;
   std::vector<std::string> messages;  // one sentence each, file and place included
 };

@@ -1,7 +1,9 @@
+// Reads extras.area_light of a glTF file's nodes.
 #include "engine/scene/scene_area.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -14,7 +16,8 @@ namespace {
 using Shape = AreaLight::Shape;
 
 const std::vector<std::string> shapes = {"rectangle", "disc", "sphere", "polygon"};  // in the enum's order
-const std::vector<std::string> keys = {"shape", "width", "height", "radius", "outline", "emission"};
+const std::vector<std::string> keys = {"shape",   "width",    "height",          "radius",
+                                       "outline", "emission", "angular_diameter"};
 
 bool has_meaning(const std::string& key, Shape shape) {
   if (key == "width" || key == "height") return shape != Shape::polygon;
@@ -24,23 +27,22 @@ bool has_meaning(const std::string& key, Shape shape) {
   return key == "shape";
 }
 
-// A finite number above zero, else nothing.
-std::optional<double> positive(const tinygltf::Value& object, const std::string& key) {
-  if (!object.Has(key) || !object.Get(key).IsNumber()) return {};
-  const double number = object.Get(key).GetNumberAsDouble();
-  return std::isfinite(number) && number > 0 ? std::optional(number) : std::nullopt;
-}
+constexpr double degree = std::numbers::pi / 180;
 
 class AreaReader {
  public:
-  AreaReader(const GltfFile& gltf, std::string place, Scene& scene)
-      : gltf_(gltf), place_(std::move(place)), scene_(scene) {}
+  AreaReader(const GltfFile& gltf, std::string place, LightType type, Scene& scene)
+      : gltf_(gltf), place_(std::move(place)), type_(type), scene_(scene) {}
 
   std::optional<AreaLight> read(const tinygltf::Value& value) {
     if (!value.IsObject()) return refuse({}, "not an object");
+    if (type_ == LightType::directional) return angular(value);
     const std::optional<Shape> shape = shape_of(value);
     if (!shape) return {};
-    warn_of_keys(value, *shape);
+    if (type_ == LightType::point && *shape != Shape::sphere)
+      return refuse("shape", "a point light's shape is a sphere");
+    const std::string name = "a " + shapes[static_cast<size_t>(*shape)];
+    warn_of_keys(value, name, [&](const std::string& key) { return has_meaning(key, *shape); });
     if (*shape == Shape::polygon) return polygon(value);
     std::optional<AreaLight> area = *shape == Shape::rectangle ? rectangle(value) : round(value, *shape);
     if (area && *shape == Shape::rectangle && value.Has("emission"))
@@ -59,7 +61,7 @@ class AreaReader {
   }
 
   std::optional<Shape> shape_of(const tinygltf::Value& value) {
-    if (!value.Has("shape")) return Shape::rectangle;
+    if (!value.Has("shape")) return type_ == LightType::point ? Shape::sphere : Shape::rectangle;
     const tinygltf::Value& shape = value.Get("shape");
     if (!shape.IsString()) return refuse("shape", "not a string", did_you_mean("", shapes));
     const auto& name = shape.Get<std::string>();
@@ -69,30 +71,42 @@ class AreaReader {
     return static_cast<Shape>(found - shapes.begin());
   }
 
-  void warn_of_keys(const tinygltf::Value& value, Shape shape) {
+  // `name`: of what the object describes, as in "a disc". `means`: has a known key a meaning for it?
+  template <typename Means>
+  void warn_of_keys(const tinygltf::Value& value, const std::string& name, const Means& means) {
     for (const std::string& key : value.Keys()) {
       if (std::find(keys.begin(), keys.end(), key) == keys.end())
         warn(key, "unknown key '" + key + "', ignored", did_you_mean(key, keys));
-      else if (!has_meaning(key, shape))
-        warn(key, "a " + shapes[static_cast<size_t>(shape)] + " has no '" + key + "', ignored");
+      else if (!means(key))
+        warn(key, name + " has no '" + key + "', ignored");
     }
   }
 
+  std::optional<AreaLight> angular(const tinygltf::Value& value) {
+    const std::string own = "angular_diameter";
+    const std::string hint = R"(degrees, as in {"angular_diameter": 0.53})";
+    if (!value.Has(own)) return refuse({}, "a directional light needs an angular_diameter", hint);
+    warn_of_keys(value, "a directional light", [&](const std::string& key) { return key == own; });
+    const auto degrees = positive_number(value, own);
+    if (!degrees || *degrees >= 180) return refuse(own, "not a number above 0 and below 180", hint);
+    return angular_disc(*degrees * degree);
+  }
+
   std::optional<AreaLight> rectangle(const tinygltf::Value& value) {
-    const auto width = positive(value, "width"), height = positive(value, "height");
+    const auto width = positive_number(value, "width"), height = positive_number(value, "height");
     if (!width || !height) return refuse({}, "needs a width and a height above 0");
     return AreaLight{Shape::rectangle, *width, *height, {}, {}};
   }
 
   std::optional<AreaLight> round(const tinygltf::Value& value, Shape shape) {
     if (value.Has("radius")) {
-      const auto radius = positive(value, "radius");
+      const auto radius = positive_number(value, "radius");
       if (!radius) return refuse("radius", "not a number above 0");
       if (value.Has("width") || value.Has("height"))
         return refuse({}, "has a radius, and a width or height besides", "give one of them");
       return AreaLight{shape, 2 * *radius, 2 * *radius, {}, {}};
     }
-    const auto width = positive(value, "width"), height = positive(value, "height");
+    const auto width = positive_number(value, "width"), height = positive_number(value, "height");
     if (!width || !height) return refuse({}, "needs a radius, or a width and a height, above 0");
     if (*width != *height) return refuse("height", "a disc or sphere is as wide as high");
     return AreaLight{shape, *width, *height, {}, {}};
@@ -131,8 +145,8 @@ class AreaReader {
   uint32_t add(const Texture& texture) {
     const auto same = [&](const Texture& t) {
       return t.name == texture.name && t.width == texture.width && t.height == texture.height &&
-             t.nearest == texture.nearest && t.repeat_u == texture.repeat_u &&
-             t.repeat_v == texture.repeat_v && t.rgba == texture.rgba;
+             t.nearest == texture.nearest && t.wrap_u == texture.wrap_u && t.wrap_v == texture.wrap_v &&
+             t.rgba == texture.rgba;
     };
     const auto found = std::find_if(scene_.textures.begin(), scene_.textures.end(), same);
     if (found != scene_.textures.end()) return static_cast<uint32_t>(found - scene_.textures.begin());
@@ -173,14 +187,21 @@ class AreaReader {
 
   const GltfFile& gltf_;
   const std::string place_;
+  const LightType type_;
   Scene& scene_;
 };
 
 }  // namespace
 
+std::optional<double> positive_number(const tinygltf::Value& object, const std::string& key) {
+  if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsNumber()) return {};
+  const double number = object.Get(key).GetNumberAsDouble();
+  return std::isfinite(number) && number > 0 ? std::optional(number) : std::nullopt;
+}
+
 std::optional<AreaLight> read_area(const GltfFile& gltf, const tinygltf::Value& value,
-                                   const std::string& place, Scene& scene) {
-  return AreaReader(gltf, place, scene).read(value);
+                                   const std::string& place, LightType type, Scene& scene) {
+  return AreaReader(gltf, place, type, scene).read(value);
 }
 
 }  // namespace gnomon

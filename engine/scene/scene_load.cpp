@@ -1,123 +1,21 @@
+// Loads a glTF file as a scene.
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "engine/base/error.h"
 #include "engine/scene/gltf_animation.h"
 #include "engine/scene/gltf_file.h"
-#include "engine/scene/mesh_clean.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/scene_instances.h"
+#include "engine/scene/scene_limits.h"
 #include "engine/scene/scene_nodes.h"
 #include "engine/scene/scene_primitive.h"
 
 namespace gnomon {
 namespace {
 
-// How far a transform is from flattening space: |det| over the product of its axes' lengths, in [0, 1].
-double regularity(const glm::dmat3& m) {
-  const double lengths = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
-  return lengths > 0 ? std::abs(glm::determinant(m)) / lengths : 0.0;
-}
-
-// Places the primitives of mesh nodes; reads each primitive once and shares it between its instances.
-class InstanceReader {
- public:
-  // `animation`: may be null.
-  InstanceReader(const GltfFile& gltf, Scene& scene, Animation* animation)
-      : gltf_(gltf), scene_(scene), animation_(animation) {}
-
-  void read(const std::vector<PlacedNode>& nodes) {
-    for (size_t n = 0; n < nodes.size(); ++n) {
-      const PlacedNode& placed = nodes[n];
-      const tinygltf::Node& node = gltf_.model.nodes[placed.node];
-      if (node.mesh < 0) continue;
-      if (static_cast<size_t>(node.mesh) >= gltf_.model.meshes.size())
-        fail("no mesh " + std::to_string(node.mesh) + "; there are " +
-                 std::to_string(gltf_.model.meshes.size()),
-             gltf_.file, at(at("/nodes", placed.node), "mesh"));
-      const auto mesh = static_cast<size_t>(node.mesh);
-      for (size_t i = 0; i < gltf_.model.meshes[mesh].primitives.size(); ++i)
-        place(mesh, i, placed, n, node.name);
-    }
-  }
-
- private:
-  // `index`: of `placed`.
-  void place(size_t mesh, size_t primitive, const PlacedNode& placed, size_t index, const std::string& name) {
-    const std::optional<uint32_t> shape = read(mesh, primitive);
-    if (!shape) return;
-    Instance instance{name.empty() ? scene_.meshes[*shape].name : name, *shape, placed.world_from_node,
-                      placed.moving};
-    glm::dmat4 node_from_object(1.0);
-    const glm::dmat3 axes(instance.world_from_object);
-    if (regularity(axes) < 1e-9) {
-      if (!flatten(instance, placed.node)) return;
-    } else if (glm::determinant(axes) < 0) {
-      instance.mesh = mirror(*shape);
-      instance.world_from_object[0] = -instance.world_from_object[0];
-      node_from_object[0] = -node_from_object[0];
-    }
-    if (instance.moving)
-      animation_->instances.push_back(
-          {static_cast<uint32_t>(scene_.instances.size()), index, node_from_object});
-    scene_.instances.push_back(std::move(instance));
-  }
-
-  std::optional<uint32_t> read(size_t mesh, size_t primitive) {
-    const auto [found, fresh] = loaded_.try_emplace({mesh, primitive});
-    if (!fresh) return found->second;
-    if (std::optional<Mesh> shape = read_primitive(gltf_, mesh, primitive, scene_.warnings))
-      found->second = add(std::move(*shape));
-    return found->second;
-  }
-
-  uint32_t add(Mesh mesh) {
-    scene_.meshes.push_back(std::move(mesh));
-    return static_cast<uint32_t>(scene_.meshes.size() - 1);
-  }
-
-  // A mirroring transform (glTF 2.0, 3.7.4) becomes a mirrored mesh, so that counter-clockwise is the front
-  // everywhere.
-  uint32_t mirror(uint32_t mesh) {
-    const auto [found, fresh] = mirrored_.try_emplace(mesh, 0u);
-    if (fresh) found->second = add(mirrored(scene_.meshes[mesh]));
-    return found->second;
-  }
-
-  // A transform that flattens the mesh (a scale of 0) has no inverse: its linear part goes into a mesh of its
-  // own.
-  bool flatten(Instance& instance, size_t node) {
-    const std::string place = at("/nodes", node);
-    Mesh flat = scene_.meshes[instance.mesh];
-    const glm::dmat3 axes(instance.world_from_object);
-    for (glm::vec3& p : flat.positions) p = glm::vec3(axes * glm::dvec3(p));
-    const DroppedTriangles dropped = drop_bad_triangles(flat);
-    scene_.warnings.degenerate_triangles += dropped.degenerate;
-    scene_.warnings.nonfinite_triangles += dropped.nonfinite;
-    scene_.warnings.messages.push_back(gltf_.file + ": " + place + ": its scale flattens the mesh; dropped " +
-                                       std::to_string(dropped.degenerate + dropped.nonfinite) +
-                                       " triangles without area" +
-                                       (instance.moving ? ", and it stands still" : ""));
-    instance.moving = false;
-    if (flat.indices.empty()) return false;
-    make_flat_normals(flat);
-    finish_mesh(flat);
-    glm::dmat4 moved(1.0);
-    moved[3] = instance.world_from_object[3];
-    instance.world_from_object = moved;
-    instance.mesh = add(std::move(flat));
-    return true;
-  }
-
-  const GltfFile& gltf_;
-  Scene& scene_;
-  Animation* animation_;
-  std::map<std::pair<size_t, size_t>, std::optional<uint32_t>> loaded_;
-  std::map<uint32_t, uint32_t> mirrored_;
-};
-
 // Meshes that only mirrored or flattened instances used are left without one: drop them.
-void drop_unused_meshes(Scene& scene) {
+// `animation`: may be null.
+void drop_unused_meshes(Scene& scene, Animation* animation) {
   std::vector<uint32_t> place(scene.meshes.size(), UINT32_MAX);
   for (const Instance& instance : scene.instances) place[instance.mesh] = 0;
   std::vector<Mesh> kept;
@@ -128,13 +26,49 @@ void drop_unused_meshes(Scene& scene) {
   }
   for (Instance& instance : scene.instances) instance.mesh = place[instance.mesh];
   scene.meshes = std::move(kept);
+  if (animation == nullptr) return;
+  for (Deformation& deformation : animation->deformations) deformation.mesh = place[deformation.mesh];
+  std::erase_if(animation->deformations, [](const Deformation& d) { return d.mesh == UINT32_MAX; });
+}
+
+// Says what has been left out and why.
+[[noreturn]] void fail_without_triangles(const GltfFile& gltf, const std::vector<PlacedNode>& nodes,
+                                         const SceneWarnings& warnings) {
+  constexpr size_t most = 8;  // told
+  std::string hint;
+  size_t told = 0;
+  for (const std::string& message : warnings.messages) {
+    const std::string start = gltf.file + ": /meshes/";
+    if (message.rfind(start, 0) != 0 || ++told > most) continue;
+    hint += (hint.empty() ? "" : "; ") + message.substr(gltf.file.size() + 2);
+  }
+  if (told > most) hint += "; and " + std::to_string(told - most) + " more";
+  const bool hidden = std::any_of(nodes.begin(), nodes.end(), [&](const PlacedNode& placed) {
+    return !placed.ever_visible && gltf.model.nodes[placed.node].mesh >= 0;
+  });
+  if (hidden) hint += std::string(hint.empty() ? "" : "; ") + "nodes are hidden by KHR_node_visibility";
+  fail("no triangles: no node of the scene places a mesh with triangles that have an area", gltf.file,
+       "/scenes", hint);
+}
+
+// Materials that change: their values at rest, and where they are at time 0.
+void start_materials(Scene& scene, Animation& animation) {
+  for (ChangingMaterial& changing : animation.changing_materials) {
+    Material& material = scene.materials[changing.material];
+    changing.base_color = material.base_color;
+    changing.alpha_cutoff = material.alpha_cutoff;
+    if (changing.color)
+      material.base_color = glm::clamp(glm::vec4(values_at(*changing.color, 0)), 0.0f, 1.0f);
+    if (changing.cutoff) material.alpha_cutoff = static_cast<float>(values_at(*changing.cutoff, 0).x);
+  }
 }
 
 Bounds world_bounds(const Scene& scene) {
   Bounds bounds;
   for (const Instance& instance : scene.instances)
-    for (const glm::vec3& p : scene.meshes[instance.mesh].positions)
-      bounds.add(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(p), 1.0)));
+    if (instance.visible)
+      for (const glm::vec3& p : scene.meshes[instance.mesh].positions)
+        bounds.add(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(p), 1.0)));
   return bounds;
 }
 
@@ -152,20 +86,20 @@ Scene load_scene(const std::filesystem::path& file) {
   scene.name = file.stem().string();
   const GltfFile gltf = read_gltf(file, scene.warnings);
   std::vector<PlacedNode> nodes = walk_nodes(gltf, scene.warnings);
-  const std::shared_ptr<Animation> animation = read_animation(gltf, nodes, scene.warnings);
+  const GltfAnimation tracks = read_animation(gltf, nodes, scene.warnings);
+  const std::shared_ptr<Animation>& animation = tracks.animation;
   read_materials(gltf, scene);
-  InstanceReader(gltf, scene, animation.get()).read(nodes);
-  drop_unused_meshes(scene);
-  if (scene.instances.empty())
-    fail("no triangles: no node of the scene places a mesh with triangles that have an area", gltf.file,
-         "/scenes");
+  if (animation) start_materials(scene, *animation);
+  read_instances(gltf, nodes, scene, animation.get());
+  drop_unused_meshes(scene, animation.get());
+  if (scene.instances.empty()) fail_without_triangles(gltf, nodes, scene.warnings);
   scene.bounds = world_bounds(scene);
   read_cameras(gltf, nodes, scene, animation.get());
-  read_lights(gltf, nodes, scene, animation.get());
-  if (animation && !(animation->instances.empty() && animation->cameras.empty() && animation->lights.empty()))
-    scene.animation = animation;
+  read_lights(gltf, nodes, scene, animation.get(), tracks.intensities);
+  if (animation && !is_idle(*animation)) scene.animation = animation;
   ensure_camera(scene);
   ensure_light(scene);
+  check_limits(scene);
   warn_enclosed_lights(scene);
   return scene;
 }

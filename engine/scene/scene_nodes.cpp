@@ -1,3 +1,4 @@
+// Walks a glTF file's node tree: transforms, and what is not supported.
 #include "engine/scene/scene_nodes.h"
 
 #include <algorithm>
@@ -44,6 +45,13 @@ NodeTransform local_transform(const GltfFile& gltf, size_t index, SceneWarnings&
   }
   if (!node.scale.empty()) result.scale = {node.scale[0], node.scale[1], node.scale[2]};
   return result;
+}
+
+bool shows_itself(const tinygltf::Node& node) {
+  const auto found = node.extensions.find("KHR_node_visibility");
+  if (found == node.extensions.end() || !found->second.Has("visible")) return true;
+  const tinygltf::Value& visible = found->second.Get("visible");
+  return !visible.IsBool() || visible.Get<bool>();
 }
 
 const tinygltf::Scene* default_scene(const GltfFile& gltf) {
@@ -100,7 +108,9 @@ std::vector<PlacedNode> walk_nodes(const GltfFile& gltf, SceneWarnings& warnings
     const NodeTransform local = local_transform(gltf, index, warnings);
     const glm::dmat4 to_parent = local.parent_from_node();
     const glm::dmat4 world = pending.parent ? placed[*pending.parent].world_from_node * to_parent : to_parent;
-    placed.push_back({index, pending.parent, local, world, false});
+    const bool itself = shows_itself(gltf.model.nodes[index]);
+    const bool visible = itself && (!pending.parent || placed[*pending.parent].visible);
+    placed.push_back({index, pending.parent, local, world, false, itself, visible, visible, false});
     for (int i = 0; i < 16; ++i)
       if (!std::isfinite(world[i / 4][i % 4]))
         fail("its transform to the world is not finite", gltf.file, at("/nodes", index));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -17,7 +18,11 @@ struct PlacedNode {
   std::optional<size_t> parent;  // index of an earlier placed node; absent: a root
   NodeTransform local;
   glm::dmat4 world_from_node{1.0};
-  bool moving = false;  // some animation moves it; world_from_node is that of time 0
+  bool moving = false;       // some animation moves it; world_from_node is that of time 0
+  bool shows_itself = true;  // KHR_node_visibility
+  bool visible = true;       // it and all nodes above show themselves at time 0
+  bool ever_visible = true;  // at some time of the animations
+  bool blinks = false;       // some animation shows and hides it
 };
 
 // Nodes of the default scene (the first scene, or all roots, when none is named), parents before children.
@@ -33,8 +38,9 @@ glm::dmat4 looking_at(const glm::dvec3& eye, const glm::dvec3& target);
 // Those that move are attached to `animation` (Attachment::node: index into `nodes`), which may be null.
 void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
                   Animation* animation);
+// `intensities`: tracks of the file's lights, by their index.
 void read_lights(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
-                 Animation* animation);
+                 Animation* animation, const std::map<size_t, Track>& intensities);
 // Default ones when there are none, with a warning each. Scene::bounds must be known.
 void ensure_camera(Scene& scene);
 void ensure_light(Scene& scene);

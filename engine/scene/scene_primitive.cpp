@@ -1,3 +1,4 @@
+// One glTF primitive as a mesh: attributes, triangles, and the coordinates of its texture.
 #include "engine/scene/scene_primitive.h"
 
 #include <algorithm>
@@ -48,19 +49,33 @@ std::vector<glm::vec4> read_attribute(const GltfFile& gltf, const tinygltf::Prim
   return values;
 }
 
+// The set that the material's texture asks for, with its transform applied.
+void read_coordinates(const GltfFile& gltf, const tinygltf::Primitive& primitive, const std::string& place,
+                      Mesh& mesh, SceneWarnings& warnings) {
+  const size_t count = mesh.positions.size();
+  const TextureCoordinates wanted = texture_coordinates(gltf, primitive.material);
+  const std::string name = "TEXCOORD_" + std::to_string(wanted.used ? wanted.set : 0);
+  for (const glm::vec4& t : read_attribute(gltf, primitive, name.c_str(), place, {2}, count)) {
+    glm::vec2 uv(t);
+    if (wanted.transform) uv = glm::vec2(*wanted.transform * glm::dvec3(t.x, t.y, 1.0));
+    const bool finite = std::isfinite(uv.x) && std::isfinite(uv.y);
+    mesh.uvs.push_back(finite ? uv : glm::vec2(0.0f));
+  }
+  if (wanted.used && mesh.uvs.empty())
+    warnings.messages.push_back(gltf.file + ": " + place + ": its material's texture needs " + name +
+                                ", which is not there; (0, 0) is used");
+  mesh.uvs.resize(count, glm::vec2(0.0f));
+}
+
 void read_vertices(const GltfFile& gltf, const tinygltf::Primitive& primitive, const std::string& place,
-                   Mesh& mesh) {
+                   Mesh& mesh, SceneWarnings& warnings) {
   const std::string here = at(at(place, "attributes"), "POSITION");
   for (const glm::vec4& p : read_vectors(gltf, *attribute(primitive, "POSITION"), here, {3}))
     mesh.positions.emplace_back(p);
   const size_t count = mesh.positions.size();
   for (const glm::vec4& n : read_attribute(gltf, primitive, "NORMAL", place, {3}, count))
     mesh.normals.emplace_back(n);
-  for (const glm::vec4& t : read_attribute(gltf, primitive, "TEXCOORD_0", place, {2}, count)) {
-    const bool finite = std::isfinite(t.x) && std::isfinite(t.y);
-    mesh.uvs.push_back(finite ? glm::vec2(t) : glm::vec2(0.0f));
-  }
-  mesh.uvs.resize(count, glm::vec2(0.0f));
+  read_coordinates(gltf, primitive, place, mesh, warnings);
   mesh.colors = read_attribute(gltf, primitive, "COLOR_0", place, {3, 4}, count);
   for (glm::vec4& c : mesh.colors)
     for (int i = 0; i < 4; ++i) c[i] = std::isfinite(c[i]) ? std::clamp(c[i], 0.0f, 1.0f) : 1.0f;
@@ -101,18 +116,16 @@ bool skip_primitive(const GltfFile& gltf, const tinygltf::Primitive& primitive, 
   const int mode = primitive.mode;
   if (mode > TINYGLTF_MODE_TRIANGLE_FAN || mode < -1)
     fail("mode " + std::to_string(mode) + " is unknown", gltf.file, at(place, "mode"));
-  if (mode >= 0 && mode < TINYGLTF_MODE_TRIANGLES) return warn("points and lines are left out"), true;
+  if (mode == TINYGLTF_MODE_POINTS) return warn("points are left out: they have no area"), true;
+  if (mode >= 0 && mode < TINYGLTF_MODE_TRIANGLES) return warn("lines are left out: they have no area"), true;
   if (attribute(primitive, "POSITION") == nullptr) return warn("no POSITION, left out"), true;
-  if (!primitive.targets.empty()) warn("morph targets are ignored");
-  if (attribute(primitive, "JOINTS_0") != nullptr)
-    warn("skinning is ignored: the mesh stays in its bind pose");
   return false;
 }
 
 }  // namespace
 
-std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh_index, size_t primitive_index,
-                                   SceneWarnings& warnings) {
+std::optional<Mesh> read_raw_primitive(const GltfFile& gltf, size_t mesh_index, size_t primitive_index,
+                                       SceneWarnings& warnings) {
   const tinygltf::Mesh& source = gltf.model.meshes[mesh_index];
   const tinygltf::Primitive& primitive = source.primitives[primitive_index];
   const std::string place = place_of(mesh_index, primitive_index);
@@ -121,7 +134,7 @@ std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh_index, size
   Mesh mesh;
   mesh.name = source.name.empty() ? "mesh" + std::to_string(mesh_index) : source.name;
   if (source.primitives.size() > 1) mesh.name += "." + std::to_string(primitive_index);
-  read_vertices(gltf, primitive, place, mesh);
+  read_vertices(gltf, primitive, place, mesh, warnings);
   read_triangles(gltf, primitive, place, mesh, warnings);
   const size_t materials = gltf.model.materials.size();
   if (primitive.material >= 0 && static_cast<size_t>(primitive.material) >= materials)
@@ -129,8 +142,15 @@ std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh_index, size
          gltf.file, at(place, "material"));
   mesh.material =
       primitive.material < 0 ? static_cast<uint32_t>(materials) : static_cast<uint32_t>(primitive.material);
+  return mesh;
+}
 
-  const DroppedTriangles dropped = drop_bad_triangles(mesh);
+bool clean_primitive(const GltfFile& gltf, size_t mesh_index, size_t primitive_index, Mesh& mesh,
+                     std::vector<uint32_t>* origins, SceneWarnings& warnings) {
+  const tinygltf::Primitive& primitive = gltf.model.meshes[mesh_index].primitives[primitive_index];
+  const std::string place = place_of(mesh_index, primitive_index);
+  const DroppedTriangles dropped =
+      origins != nullptr ? drop_bad_triangles(mesh, *origins) : drop_bad_triangles(mesh);
   warnings.degenerate_triangles += dropped.degenerate;
   warnings.nonfinite_triangles += dropped.nonfinite;
   if (dropped.degenerate > 0)
@@ -139,16 +159,25 @@ std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh_index, size
   if (dropped.nonfinite > 0)
     warnings.messages.push_back(gltf.file + ": " + place + ": dropped " + std::to_string(dropped.nonfinite) +
                                 " triangles with NaN or infinite vertices");
-  if (mesh.indices.empty()) return {};
-  if (mesh.normals.empty())
-    make_flat_normals(mesh);
-  else
+  if (mesh.indices.empty()) return false;
+  if (!mesh.normals.empty())
     repair_normals(mesh);
+  else if (origins != nullptr)
+    make_flat_normals(mesh, *origins);
+  else
+    make_flat_normals(mesh);
   finish_mesh(mesh);
   if (primitive.indices >= 0 && attribute(primitive, "NORMAL") != nullptr)
     warnings.duplicate_vertices += count_duplicate_vertices(mesh);
   warn_far_origin(gltf, place, mesh, warnings);
-  return mesh;
+  return true;
+}
+
+std::optional<Mesh> read_primitive(const GltfFile& gltf, size_t mesh, size_t primitive,
+                                   SceneWarnings& warnings) {
+  std::optional<Mesh> shape = read_raw_primitive(gltf, mesh, primitive, warnings);
+  if (shape && !clean_primitive(gltf, mesh, primitive, *shape, nullptr, warnings)) shape.reset();
+  return shape;
 }
 
 }  // namespace gnomon

@@ -4,25 +4,18 @@
 #include <numbers>
 
 #include "engine/base/error.h"
+#include "engine/scene/mesh_clean.h"
 #include "engine/scene/scene_area.h"
+#include "engine/scene/scene_lights_area.h"
 #include "engine/scene/scene_nodes.h"
+#include "engine/scene/wide_spot.h"
 
 namespace gnomon {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double widest_map = 169.0 / 180.0 * pi;  // of a spot's square frustum
 
 double radians(double degrees) { return degrees / 180.0 * pi; }
-
-// A finite number above zero in a JSON object, else nothing.
-std::optional<double> positive(const tinygltf::Value& object, const std::string& name) {
-  if (!object.IsObject() || !object.Has(name)) return {};
-  const tinygltf::Value& value = object.Get(name);
-  if (!value.IsNumber()) return {};
-  const double number = value.GetNumberAsDouble();
-  return std::isfinite(number) && number > 0 ? std::optional(number) : std::nullopt;
-}
 
 const tinygltf::Value& member(const tinygltf::Value& object, const std::string& name) {
   static const tinygltf::Value none;
@@ -31,14 +24,17 @@ const tinygltf::Value& member(const tinygltf::Value& object, const std::string& 
 
 class LightReader {
  public:
-  LightReader(const GltfFile& gltf, Scene& scene) : gltf_(gltf), scene_(scene) {}
+  // `animation`: may be null.
+  LightReader(const GltfFile& gltf, Scene& scene, Animation* animation,
+              const std::map<size_t, Track>& intensities)
+      : gltf_(gltf), scene_(scene), animation_(animation), intensities_(intensities) {}
 
-  void read(const std::vector<PlacedNode>& nodes, Animation* animation) {
+  void read(const std::vector<PlacedNode>& nodes) {
     for (size_t i = 0; i < nodes.size(); ++i) {
       const size_t before = scene_.lights.size();
-      read_node(nodes[i]);
-      if (nodes[i].moving && scene_.lights.size() > before)
-        animation->lights.push_back({static_cast<uint32_t>(before), i, glm::dmat4(1.0)});
+      const std::optional<size_t> source = read_node(nodes[i]);
+      for (size_t light = before; animation_ != nullptr && light < scene_.lights.size(); ++light)
+        attach(static_cast<uint32_t>(light), i, nodes[i], source);
     }
     apply_scene_extras();
   }
@@ -48,24 +44,47 @@ class LightReader {
     scene_.warnings.messages.push_back(gltf_.file + ": " + place + ": " + what);
   }
 
-  void read_node(const PlacedNode& placed) {
+  // `source`: index of a punctual light in the file.
+  void attach(uint32_t light, size_t node, const PlacedNode& placed, std::optional<size_t> source) {
+    if (placed.moving) animation_->lights.push_back({light, node, glm::dmat4(1.0)});
+    const auto track = source ? intensities_.find(*source) : intensities_.end();
+    if (track == intensities_.end() && !placed.blinks) return;
+    ChangingLight changing{light, scene_.lights[light].intensity, {}, {}};
+    if (track != intensities_.end()) changing.track = track->second;
+    if (placed.blinks) changing.node = node;
+    if (!placed.visible) scene_.lights[light].intensity = 0;
+    animation_->changing_lights.push_back(std::move(changing));
+  }
+
+  // The light's index in the file; nothing when the node has none.
+  std::optional<size_t> read_node(const PlacedNode& placed) {
     const tinygltf::Node& node = gltf_.model.nodes[placed.node];
+    if (std::optional<Light> area = read_lights_area(gltf_, placed, scene_.warnings);
+        area && placed.ever_visible) {
+      area->map_fov = widest_map;
+      add(std::move(*area), node);
+    }
     const auto extension = node.extensions.find("KHR_lights_punctual");
-    if (extension == node.extensions.end()) return;
+    if (extension == node.extensions.end() || !placed.ever_visible) return {};
     const std::string place = at("/nodes", placed.node);
-    const tinygltf::Value& reference = member(extension->second, "light");
+    const tinygltf::Value reference = member(extension->second, "light");
     const int index = reference.IsInt() ? reference.GetNumberAsInt() : -1;
     if (index < 0 || static_cast<size_t>(index) >= gltf_.model.lights.size())
       fail("no light " + std::to_string(index) + "; there are " + std::to_string(gltf_.model.lights.size()),
            gltf_.file, place + "/extensions/KHR_lights_punctual/light");
     Light light = punctual(static_cast<size_t>(index));
-    if (light.name.empty()) light.name = node.name.empty() ? "light" + std::to_string(index) : node.name;
     light.world_from_light = rigid(placed.world_from_node);
     light.moving = placed.moving;
-    const bool own_fov = set_map_fov(light, node.extras);
     set_area(light, node.extras, at(place, "extras"));
+    add(std::move(light), node, "light" + std::to_string(index));
+    return static_cast<size_t>(index);
+  }
+
+  // `standard`: its name when neither it nor its node has one.
+  void add(Light light, const tinygltf::Node& node, const std::string& standard = "area light") {
+    if (light.name.empty()) light.name = node.name.empty() ? standard : node.name;
+    own_fov_.push_back(set_map_fov(light, node.extras));
     scene_.lights.push_back(std::move(light));
-    own_fov_.push_back(own_fov);
   }
 
   Light punctual(size_t index) {
@@ -109,7 +128,7 @@ class LightReader {
 
   // `extras.light.fovy_deg`: the square frustum of the map. True when it was given.
   static bool set_map_fov(Light& light, const tinygltf::Value& extras) {
-    const auto degrees = positive(member(extras, "light"), "fovy_deg");
+    const auto degrees = positive_number(member(extras, "light"), "fovy_deg");
     if (!degrees || light.type != LightType::spot) return false;
     light.map_fov = std::min(radians(*degrees), widest_map);
     return true;
@@ -117,15 +136,11 @@ class LightReader {
 
   void set_area(Light& light, const tinygltf::Value& extras, const std::string& place) {
     if (!extras.IsObject() || !extras.Has("area_light")) return;
-    const std::string area_place = at(place, "area_light");
-    if (light.type == LightType::spot)
-      light.area = read_area(gltf_, extras.Get("area_light"), area_place, scene_);
-    else
-      warn(area_place,
-           "only spot lights are area lights: light '" + light.name + "' shines from its centre alone");
+    light.area = read_area(gltf_, extras.Get("area_light"), at(place, "area_light"), light.type, scene_);
   }
 
-  // The scene's own extras go to the first spot light, where its node says nothing.
+  // The scene's own extras go to the first spot light, or the first light where there is none, unless its
+  // node says more.
   void apply_scene_extras() {
     const tinygltf::Value& extras = scene_extras(gltf_);
     for (size_t i = 0; i < scene_.lights.size(); ++i) {
@@ -134,37 +149,16 @@ class LightReader {
       if (!own_fov_[i]) set_map_fov(scene_.lights[i], extras);
       return;
     }
-    if (!scene_.lights.empty()) set_area(scene_.lights[0], extras, "/scenes/extras");  // warns
+    if (!scene_.lights.empty() && !scene_.lights[0].area)
+      set_area(scene_.lights[0], extras, "/scenes/extras");
   }
 
   const GltfFile& gltf_;
   Scene& scene_;
+  Animation* animation_;
+  const std::map<size_t, Track>& intensities_;
   std::vector<bool> own_fov_;
 };
-
-// Moeller and Trumbore 1997, one-sided in t; the ray's direction is fixed and matches no axis.
-bool crosses(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& a, const glm::dvec3& b,
-             const glm::dvec3& c) {
-  const glm::dvec3 ab = b - a, ac = c - a, p = glm::cross(direction, ac);
-  const double determinant = glm::dot(ab, p);
-  if (determinant == 0.0) return false;
-  const glm::dvec3 s = origin - a, q = glm::cross(s, ab);
-  const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant;
-  return u >= 0 && v >= 0 && u + v <= 1 && glm::dot(ac, q) / determinant > 0;
-}
-
-bool encloses(const Mesh& mesh, const glm::dvec3& point) {
-  if (!mesh.watertight || glm::any(glm::lessThan(point, mesh.bounds.min)) ||
-      glm::any(glm::greaterThan(point, mesh.bounds.max)))
-    return false;
-  const glm::dvec3 direction(0.5377, 0.7713, 0.3401);
-  size_t crossings = 0;
-  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    crossings += crosses(point, direction, glm::dvec3(mesh.positions[mesh.indices[i]]),
-                         glm::dvec3(mesh.positions[mesh.indices[i + 1]]),
-                         glm::dvec3(mesh.positions[mesh.indices[i + 2]]));
-  return crossings % 2 == 1;
-}
 
 }  // namespace
 
@@ -201,14 +195,18 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
       camera.near = view.znear;
     else
       scene.warnings.messages.push_back(place + "znear is not above 0, 0.1 is used");
+    if (std::isfinite(view.zfar) && view.zfar > camera.near)
+      camera.far = view.zfar;
+    else if (view.zfar != 0.0)
+      scene.warnings.messages.push_back(place + "zfar is not above znear, nothing is cut off");
     if (std::isfinite(view.aspectRatio) && view.aspectRatio > 0) camera.aspect = view.aspectRatio;
     scene.cameras.push_back(std::move(camera));
   }
 }
 
 void read_lights(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
-                 Animation* animation) {
-  LightReader(gltf, scene).read(nodes, animation);
+                 Animation* animation, const std::map<size_t, Track>& intensities) {
+  LightReader(gltf, scene, animation, intensities).read(nodes);
 }
 
 void ensure_camera(Scene& scene) {
@@ -249,7 +247,8 @@ void warn_enclosed_lights(Scene& scene) {
     const glm::dvec4 position = light.world_from_light[3];
     for (const Instance& instance : scene.instances) {
       const glm::dvec3 inside = glm::dvec3(glm::inverse(instance.world_from_object) * position);
-      if (!encloses(scene.meshes[instance.mesh], inside)) continue;
+      const Mesh& mesh = scene.meshes[instance.mesh];
+      if (!mesh.watertight || !is_inside(mesh, inside)) continue;
       scene.warnings.messages.push_back(scene.file.string() + ": light '" + light.name + "' is inside '" +
                                         instance.name + "', which hides it from everything outside");
       break;

@@ -1,8 +1,11 @@
+// What a triangle of a scene looks like at a point: base colour, alpha and normal, on the CPU.
 #include "engine/scene/surface.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "engine/image/srgb.h"
 
 namespace gnomon {
 namespace {
@@ -13,25 +16,40 @@ T interpolate(const std::vector<T>& values, const Mesh& mesh, uint32_t triangle,
   return weights.x * values[index[0]] + weights.y * values[index[1]] + weights.z * values[index[2]];
 }
 
-uint32_t wrap(int64_t i, uint32_t size, bool repeat) {
+uint32_t wrapped(int64_t i, uint32_t size, Wrap wrap) {
   const auto n = static_cast<int64_t>(size);
-  if (repeat) return static_cast<uint32_t>(((i % n) + n) % n);
-  return static_cast<uint32_t>(std::clamp<int64_t>(i, 0, n - 1));
+  const auto modulo = [i](int64_t m) { return ((i % m) + m) % m; };
+  switch (wrap) {
+    case Wrap::repeat:
+      return static_cast<uint32_t>(modulo(n));
+    case Wrap::mirror:
+      return static_cast<uint32_t>(std::min(modulo(2 * n), 2 * n - 1 - modulo(2 * n)));
+    default:
+      return static_cast<uint32_t>(std::clamp<int64_t>(i, 0, n - 1));
+  }
+}
+
+// In texels. In double, and reduced to one repetition first, so that large coordinates keep their fraction.
+double texels(double c, Wrap wrap, uint32_t size) {
+  if (!std::isfinite(c)) return 0.0;
+  switch (wrap) {
+    case Wrap::repeat:
+      return (c - std::floor(c)) * size;
+    case Wrap::mirror:
+      return (c - 2.0 * std::floor(0.5 * c)) * size;
+    default:
+      return std::clamp(c, -1.0, 2.0) * size;
+  }
 }
 
 // Filters fetch(x, y) at `uv`; texel centres are at half integers.
 template <typename Fetch>
 auto filter(const Texture& texture, const glm::vec2& uv, const Fetch& fetch) {
   const auto at = [&](int64_t x, int64_t y) {
-    return fetch(wrap(x, texture.width, texture.repeat_u), wrap(y, texture.height, texture.repeat_v));
+    return fetch(wrapped(x, texture.width, texture.wrap_u), wrapped(y, texture.height, texture.wrap_v));
   };
-  // In double, and reduced to one repetition first, so that large coordinates keep their fraction.
-  const auto coordinate = [](double c, bool repeat, uint32_t size) {
-    if (!std::isfinite(c)) return 0.0;
-    return (repeat ? c - std::floor(c) : std::clamp(c, -1.0, 2.0)) * size;
-  };
-  const double x = coordinate(uv.x, texture.repeat_u, texture.width);
-  const double y = coordinate(uv.y, texture.repeat_v, texture.height);
+  const double x = texels(uv.x, texture.wrap_u, texture.width);
+  const double y = texels(uv.y, texture.wrap_v, texture.height);
   if (texture.nearest) return at(int64_t(std::floor(x)), int64_t(std::floor(y)));
   const double x0 = std::floor(x - 0.5), y0 = std::floor(y - 0.5);
   const auto fx = float(x - 0.5 - x0), fy = float(y - 0.5 - y0);
@@ -54,18 +72,6 @@ float texture_alpha(const Texture& texture, const glm::vec2& uv) {
 }
 
 }  // namespace
-
-float srgb_decode(uint8_t byte) {
-  static const auto table = [] {
-    std::array<float, 256> values{};
-    for (int i = 0; i < 256; ++i) {
-      const double c = i / 255.0;
-      values[i] = float(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-    }
-    return values;
-  }();
-  return table[byte];
-}
 
 glm::vec4 base_color(const Scene& scene, const Mesh& mesh, uint32_t triangle, const Barycentric& weights) {
   const Material& material = scene.materials[mesh.material];

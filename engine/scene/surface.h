@@ -11,9 +11,6 @@ namespace gnomon {
 // Barycentric weights of a triangle's three vertices.
 using Barycentric = glm::vec3;
 
-// Linear light of an 8-bit sRGB value, 0..1 (IEC 61966-2-1).
-float srgb_decode(uint8_t byte);
-
 // Base colour factor x texture (level 0, filtered and wrapped as the texture says) x COLOR_0; linear, with
 // alpha.
 glm::vec4 base_color(const Scene& scene, const Mesh& mesh, uint32_t triangle, const Barycentric& weights);

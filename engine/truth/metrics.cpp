@@ -1,3 +1,4 @@
+// Error metrics of visibility images, and flicker of sequences.
 #include "engine/truth/metrics.h"
 
 #include <fmt/format.h>

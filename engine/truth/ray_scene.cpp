@@ -1,3 +1,4 @@
+// A scene in Embree: first hits, and whether a segment is blocked.
 #include "engine/truth/ray_scene.h"
 
 #if __has_include(<embree4/rtcore.h>)
@@ -19,6 +20,10 @@ namespace gnomon {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr double rounding = 1.0 / (1 << 20);  // of a coordinate: 16 times a float's largest relative error
+// Embree takes coordinates up to 1.8e18; less, so that sums of a few stay below. What a loaded scene places
+// is nearer to the world's origin than half of it (scene_limits.h).
+constexpr double largest = 1e16;
 // Shadow rays towards a point end just before it, so that a surface touching the light does not put it out.
 constexpr float before_light = 1.0f - 1e-6f;
 
@@ -34,6 +39,7 @@ struct RayQuery {
   Context context;  // first: filters receive its address
   bool primary = false;
   TriangleId self;
+  glm::dvec3 start{0};  // of shadow rays, exact
   explicit RayQuery(bool is_primary, TriangleId triangle = {}) : primary(is_primary), self(triangle) {
     init_context(&context);
   }
@@ -73,7 +79,9 @@ struct Geometry {  // one instance
   const Scene* scene = nullptr;
   const Mesh* mesh = nullptr;
   glm::dmat4 local_from_object{1.0};  // relative to the origin
+  glm::dmat4 object_from_local{1.0};
   glm::dmat3 normal_matrix{1.0};
+  double extent = 0;      // largest distance of a vertex from the origin
   bool mirrored = false;  // the transform swaps front and back (glTF 2.0, section 3.7.4)
   bool double_sided = false;
   bool alpha_masked = false;
@@ -91,6 +99,16 @@ struct Geometry {  // one instance
   }
 };
 
+// Is a triangle in front of a ray's start, within its borders? Distances count from the rounding of doubles
+// on.
+bool ahead(const glm::dvec3* p, const glm::dvec3& from, const glm::dvec3& direction) {
+  const glm::dvec3 edge1 = p[1] - p[0], edge2 = p[2] - p[0], to_start = from - p[0];
+  const glm::dvec3 across = glm::cross(direction, edge2), turned = glm::cross(to_start, edge1);
+  const double determinant = glm::dot(edge1, across);
+  const double u = glm::dot(to_start, across) / determinant, v = glm::dot(direction, turned) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && glm::dot(edge2, turned) / determinant > 0;
+}
+
 // Clears the hits that do not count; Embree then goes on along the ray.
 void filter_hits(const RTCFilterFunctionNArguments* args) {
   const auto* query = reinterpret_cast<const RayQuery*>(args->context);
@@ -101,12 +119,18 @@ void filter_hits(const RTCFilterFunctionNArguments* args) {
     const auto passes = [&] {
       if (query->self.triangle == triangle && query->self.instance == RTCHitN_geomID(args->hit, args->N, i))
         return true;
+      const glm::dvec3 direction(RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
+                                 RTCRayN_dir_z(args->ray, args->N, i));
+      glm::dvec3 p[3];
       if (query->primary && !geometry->double_sided) {
-        glm::dvec3 p[3];
         geometry->corners(triangle, p);
-        const glm::dvec3 direction(RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
-                                   RTCRayN_dir_z(args->ray, args->N, i));
         if (glm::dot(geometry->front_normal(p), direction) >= 0) return true;
+      }
+      // So near that the rounding of its mesh's vertices may have moved it before the ray's start.
+      if (!query->primary &&
+          RTCRayN_tfar(args->ray, args->N, i) * glm::length(direction) <= rounding * geometry->extent) {
+        geometry->corners(triangle, p);
+        if (!ahead(p, query->start, direction)) return true;
       }
       if (!geometry->alpha_masked) return false;
       const float u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
@@ -116,12 +140,22 @@ void filter_hits(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-Bounds vertex_bounds(const Scene& scene) {
-  Bounds bounds;
-  for (const Instance& instance : scene.instances)
-    for (const glm::vec3& p : scene.meshes[instance.mesh].positions)
-      bounds.add(glm::dvec3(instance.world_from_object * glm::dvec4(p, 1.0)));
-  return bounds;
+// Of a ray that Embree takes.
+bool representable(const glm::dvec3& v) {
+  return std::abs(v.x) <= largest && std::abs(v.y) <= largest && std::abs(v.z) <= largest;
+}
+
+struct Segment {
+  glm::vec3 direction;  // NaN where there is none
+  float far;
+};
+
+// From a ray's start to its target, a place or (`infinite`) a direction. What is further than Embree's rays
+// reach lies beyond all of the scene.
+Segment segment(const glm::vec3& start, const glm::dvec3& target, bool infinite) {
+  const glm::dvec3 way = infinite ? target : target - glm::dvec3(start);
+  if (representable(way)) return {glm::vec3(way), infinite ? infinity : before_light};
+  return {glm::vec3(glm::normalize(way)), infinity};
 }
 
 }  // namespace
@@ -131,7 +165,6 @@ struct RayScene::Impl {
   RTCScene scene = nullptr;
   std::vector<Geometry> geometries;  // index: Embree's geometry ID = instance; fixed in memory once filled
   glm::dvec3 origin{0};
-  double offset = 0;
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -153,8 +186,12 @@ struct RayScene::Impl {
         target, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), mesh.triangles()));
     if (!vertices || !indices) fail("not enough memory to trace the scene");
     for (const glm::vec3& p : mesh.positions) {
-      const glm::dvec4 local = geometry.local_from_object * glm::dvec4(p, 1.0);
+      const glm::dvec3 local(geometry.local_from_object * glm::dvec4(p, 1.0));
+      if (!representable(local))
+        fail(fmt::format("'{}' reaches further than {} from the camera", mesh.name, largest),
+             geometry.scene->file.string());
       for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(local[k]);
+      geometry.extent = std::max(geometry.extent, glm::length(local));
     }
     std::copy_n(mesh.indices.begin(), 3 * mesh.triangles(), indices);
     rtcSetGeometryUserData(target, &geometry);
@@ -166,16 +203,23 @@ struct RayScene::Impl {
     rtcReleaseGeometry(target);
   }
 
-  glm::vec3 start(const glm::dvec3& from, const glm::dvec3& normal) const {
-    return glm::vec3(from + offset * normal);
+  double offset(const glm::dvec3& from, TriangleId self) const {
+    double size = glm::length(from);
+    if (self.instance != TriangleId::none) {
+      const Geometry& geometry = geometries[self.instance];
+      const glm::dvec3 object = glm::abs(glm::dvec3(geometry.object_from_local * glm::dvec4(from, 1.0)));
+      glm::dvec3 rounded(0);  // what the coordinates' roundings come to in the world
+      for (int k = 0; k < 3; ++k) rounded += object[k] * glm::abs(glm::dvec3(geometry.local_from_object[k]));
+      const double most = std::max({rounded.x, rounded.y, rounded.z});
+      if (most <= largest) size = std::max(size, most);  // not of an instance that is flat
+    }
+    return rounding * size;
   }
 };
 
-RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const Scene& scene, const glm::dvec3& origin) : impl_(std::make_unique<Impl>()) {
   Impl& impl = *impl_;
-  const Bounds bounds = vertex_bounds(scene);
-  if (!bounds.empty()) impl.origin = bounds.centre();
-  impl.offset = 2e-6 * bounds.radius();
+  impl.origin = origin;
   impl.device = rtcNewDevice(nullptr);
   if (!impl.device)
     fail(fmt::format("Embree could not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
@@ -190,6 +234,7 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     geometry.mesh = &mesh;
     geometry.local_from_object = instance.world_from_object;
     geometry.local_from_object[3] -= glm::dvec4(impl.origin, 0.0);
+    geometry.object_from_local = glm::inverse(geometry.local_from_object);
     const glm::dmat3 linear(instance.world_from_object);
     geometry.mirrored = glm::determinant(linear) < 0;
     geometry.normal_matrix = glm::transpose(glm::inverse(linear));
@@ -199,7 +244,8 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     impl.geometries.push_back(geometry);
   }
   for (uint32_t id = 0; id < impl.geometries.size(); ++id)
-    if (impl.geometries[id].mesh->triangles() > 0) impl.attach(impl.geometries[id], id);
+    if (impl.geometries[id].mesh->triangles() > 0 && scene.instances[id].visible)
+      impl.attach(impl.geometries[id], id);
   impl.check("to load the scene");
   rtcCommitScene(impl.scene);
   impl.check("to build its hierarchy");
@@ -208,10 +254,13 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
 RayScene::~RayScene() = default;
 
 const glm::dvec3& RayScene::origin() const { return impl_->origin; }
-double RayScene::shadow_offset() const { return impl_->offset; }
+double RayScene::shadow_offset(const glm::dvec3& from, TriangleId self) const {
+  return impl_->offset(from, self);
+}
 
 std::optional<SurfaceHit> RayScene::first_hit(const glm::dvec3& from, const glm::dvec3& direction,
                                               double t_near) const {
+  if (!representable(direction)) return std::nullopt;
   RayQuery query(true);
   RTCRayHit ray{};
   const glm::vec3 org(from), dir(direction);
@@ -249,29 +298,36 @@ bool RayScene::occluded(const glm::dvec3& from, const glm::dvec3& normal, const 
                         TriangleId self) const {
   RayQuery query(false, self);
   RTCRay ray{};
-  const glm::vec3 org = impl_->start(from, normal);
-  const glm::vec3 dir(target.infinite ? target.value : target.value - glm::dvec3(org));
+  query.start = from + impl_->offset(from, self) * normal;
+  const glm::vec3 org(query.start);
+  const auto [dir, far] = segment(org, target.value, target.infinite);
+  if (std::isnan(dir.x)) return true;
   ray.org_x = org.x, ray.org_y = org.y, ray.org_z = org.z;
   ray.dir_x = dir.x, ray.dir_y = dir.y, ray.dir_z = dir.z;
-  ray.tfar = target.infinite ? infinity : before_light;
+  ray.tfar = far;
   ray.mask = ~0u;
   occlude(impl_->scene, query, ray);
   return ray.tfar < 0;
 }
 
 uint32_t RayScene::occluded(const glm::dvec3& from, const glm::dvec3& normal, const glm::dvec3* targets,
-                            int count, TriangleId self) const {
+                            int count, bool infinite, TriangleId self) const {
   RayQuery query(false, self);
   RTCRay8 rays{};
   alignas(32) int valid[packet];
-  const glm::vec3 org = impl_->start(from, normal);
+  query.start = from + impl_->offset(from, self) * normal;
+  const glm::vec3 org(query.start);
   for (int i = 0; i < packet; ++i) {
     valid[i] = i < count ? -1 : 0;
     if (i >= count) continue;
-    const glm::vec3 dir(targets[i] - glm::dvec3(org));
+    const auto [dir, far] = segment(org, targets[i], infinite);
+    if (std::isnan(dir.x)) {
+      valid[i] = 0, rays.tfar[i] = -infinity;  // blocked
+      continue;
+    }
     rays.org_x[i] = org.x, rays.org_y[i] = org.y, rays.org_z[i] = org.z;
     rays.dir_x[i] = dir.x, rays.dir_y[i] = dir.y, rays.dir_z[i] = dir.z;
-    rays.tfar[i] = before_light;
+    rays.tfar[i] = far;
     rays.mask[i] = ~0u;
   }
   occlude(valid, impl_->scene, query, rays);

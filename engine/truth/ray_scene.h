@@ -1,8 +1,9 @@
 // A scene that rays can ask, on Embree in robust mode. Internal to the reference tracer.
 //
-// Embree works in floats. Vertices are baked relative to origin(), a point amid the scene, in double
-// arithmetic, so that a scene far from the world's origin loses nothing; hits are refined in double against
-// the original vertices.
+// Embree works in floats. Vertices are baked in double arithmetic relative to origin(), the eye whose rays
+// are asked for: what is near it is exact whatever else the scene holds, however far away. Hits are refined
+// in double against the original vertices, and what seems to block a shadow ray at its very start is tested
+// again in double.
 #pragma once
 
 #include <cstdint>
@@ -38,16 +39,16 @@ class RayScene {
  public:
   static constexpr int packet = 8;
 
-  // `scene` must outlive this. Error when Embree fails (out of memory).
-  explicit RayScene(const Scene& scene);
+  // `scene` must outlive this; `origin`: in the world. Error when Embree fails (out of memory).
+  RayScene(const Scene& scene, const glm::dvec3& origin);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
   const glm::dvec3& origin() const;
-  // How far shadow rays start above the surface, world units: enough to clear the rounding of float
-  // coordinates of the scene's size (a few 1e-6 of it), too little to pass an occluder.
-  double shadow_offset() const;
+  // How far a shadow ray starts above a point of a triangle, world units: 16 roundings of a float of the
+  // point's distance from the origin and of its coordinates in its mesh. Nothing else of the scene counts.
+  double shadow_offset(const glm::dvec3& from, TriangleId self) const;
 
   // The first surface at distance >= t_near. Back faces of single-sided materials and holes of alpha masks
   // are passed.
@@ -58,9 +59,10 @@ class RayScene {
   // shadow itself.
   bool occluded(const glm::dvec3& from, const glm::dvec3& normal, const ShadowTarget& target,
                 TriangleId self) const;
-  // The same for up to 8 targets of one point: bit i is set when target i is occluded.
+  // The same for up to 8 targets of one point, all of them places or all of them directions (`infinite`): bit
+  // i is set when target i is occluded.
   uint32_t occluded(const glm::dvec3& from, const glm::dvec3& normal, const glm::dvec3* targets, int count,
-                    TriangleId self) const;
+                    bool infinite, TriangleId self) const;
 
  private:
   struct Impl;

@@ -1,3 +1,4 @@
+// Traces a scene's visibility and shading, pixel by pixel.
 #include "engine/truth/reference.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "engine/base/parallel.h"
 #include "engine/base/sobol.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/wide_spot.h"
 #include "engine/truth/reference_light.h"
 #include "engine/truth/reference_tracer.h"
 
@@ -25,17 +27,21 @@ constexpr uint32_t max_samples = 1u << 20;
 struct PrimaryRays {
   glm::dvec3 eye{0};  // relative to the scene's origin
   glm::dvec3 right{0}, up{0}, forward{0};
-  double tan_x = 1, tan_y = 1, near = 0;
+  double tan_x = 1, tan_y = 1, near = 0, far = 0;
   uint32_t width = 1, height = 1;
 
   PrimaryRays(const Camera& camera, const glm::dvec3& origin, uint32_t w, uint32_t h)
-      : near(camera.near), width(w), height(h) {
+      : near(camera.near),
+        far(camera.far.value_or(std::numeric_limits<double>::infinity())),
+        width(w),
+        height(h) {
     eye = glm::dvec3(camera.world_from_camera[3]) - origin;
     right = glm::dvec3(camera.world_from_camera[0]);
     up = glm::dvec3(camera.world_from_camera[1]);
     forward = -glm::dvec3(camera.world_from_camera[2]);
-    tan_y = std::tan(0.5 * camera.fov_y);
-    tan_x = tan_y * camera.aspect.value_or(static_cast<double>(w) / h);
+    const double aspect = static_cast<double>(w) / h;
+    tan_y = half_extent(camera, aspect).y;
+    tan_x = tan_y * aspect;
   }
   glm::dvec3 direction(uint32_t x, uint32_t y) const {
     const double sx = 2 * (x + 0.5) / width - 1, sy = 1 - 2 * (y + 0.5) / height;
@@ -52,7 +58,8 @@ bool inside_light(const Light& light, const glm::dvec3& from_light) {
   if (light.type == LightType::point) return true;
   const glm::dvec3 p = glm::transpose(glm::dmat3(light.world_from_light)) * from_light;  // rigid
   const double depth = -p.z, half = std::tan(0.5 * light.map_fov) * depth;
-  if (depth <= 0 || std::abs(p.x) > half || std::abs(p.y) > half) return false;
+  const bool framed = depth > 0 && std::abs(p.x) <= half && std::abs(p.y) <= half;
+  if (!framed && !is_cut(light)) return false;
   return std::atan2(std::hypot(p.x, p.y), depth) <= light.outer_cone;
 }
 
@@ -74,24 +81,24 @@ uint32_t table_size(const Scene& scene, uint32_t samples) {
 
 class PixelShader {
  public:
-  PixelShader(const ReferenceTracer::Impl& tracer, uint32_t samples)
-      : tracer_(tracer), samples_(samples), sobol_(table_size(tracer.scene, samples)) {
-    for (const Light& light : tracer.scene.lights)
-      areas_.push_back(
-          is_area(light, samples)
-              ? std::optional<AreaSampler>(std::in_place, tracer.scene, light, tracer.centre_of(light).value)
-              : std::nullopt);
+  PixelShader(const Scene& scene, const RayScene& rays, uint32_t samples)
+      : scene_(scene), rays_(rays), samples_(samples), sobol_(table_size(scene, samples)) {
+    for (const Light& light : scene.lights)
+      areas_.push_back(is_area(light, samples)
+                           ? std::optional<AreaSampler>(std::in_place, scene, light, centre_of(light, rays))
+                           : std::nullopt);
   }
 
   void shade(Reference& result, const SurfaceHit& hit, size_t pixel, NoiseSum& noise) const {
     for (uint32_t i = 0; i < result.lights; ++i) {
-      const Light& light = tracer_.scene.lights[i];
-      const ShadowTarget centre = tracer_.centre_of(light);
+      const Light& light = scene_.lights[i];
+      const ShadowTarget centre = centre_of(light, rays_);
       const glm::dvec3 to_light = centre.infinite ? centre.value : centre.value - hit.position;
       uint8_t& domain = result.domain[i][pixel];
       float& visibility = result.visibility[i][pixel];
-      if (!(glm::dot(hit.normal, to_light) > 0)) {
-        domain = Reference::faces_away;
+      const double facing = glm::dot(hit.normal, glm::normalize(to_light));
+      if (!(facing >= Reference::least_facing)) {
+        domain = facing > -Reference::least_facing ? Reference::edge_on : Reference::faces_away;
         visibility = 0;
         continue;
       }
@@ -99,7 +106,7 @@ class PixelShader {
       if (areas_[i]) {
         visibility = area_visibility(*areas_[i], hit, static_cast<uint32_t>(pixel), i, noise);
       } else {
-        visibility = tracer_.rays.occluded(hit.position, hit.normal, centre, hit.triangle) ? 0.0f : 1.0f;
+        visibility = rays_.occluded(hit.position, hit.normal, centre, hit.triangle) ? 0.0f : 1.0f;
       }
     }
   }
@@ -120,7 +127,8 @@ class PixelShader {
     int count = 0;
     const auto flush = [&] {
       if (count == 0) return;
-      const uint32_t mask = tracer_.rays.occluded(hit.position, hit.normal, targets, count, hit.triangle);
+      const uint32_t mask =
+          rays_.occluded(hit.position, hit.normal, targets, count, view.infinite(), hit.triangle);
       for (int k = 0; k < count; ++k) {
         if ((mask >> k & 1) != 0) continue;
         lit[later[k]] += weight[k];
@@ -133,7 +141,8 @@ class PixelShader {
       if (!sample) continue;  // not on the light
       const bool second = taken++ >= half;
       all[second] += sample->weight;
-      if (!(glm::dot(hit.normal, sample->target - hit.position) > 0)) continue;  // behind the surface: unlit
+      const glm::dvec3 to_sample = view.infinite() ? sample->target : sample->target - hit.position;
+      if (!(glm::dot(hit.normal, to_sample) > 0)) continue;  // behind the surface: unlit
       targets[count] = sample->target;
       weight[count] = sample->weight;
       later[count++] = second;
@@ -151,7 +160,8 @@ class PixelShader {
     return static_cast<float>(total / most);
   }
 
-  const ReferenceTracer::Impl& tracer_;
+  const Scene& scene_;
+  const RayScene& rays_;
   uint32_t samples_;
   SobolPoints sobol_;
   std::vector<std::optional<AreaSampler>> areas_;  // by light; nothing: a point
@@ -200,9 +210,16 @@ double noise_floor(const std::vector<NoiseSum>& rows, bool any_area, uint32_t sa
 
 }  // namespace
 
-bool is_area(const Light& light, uint32_t samples) { return samples > 0 && shines_as_area(light); }
+bool is_area(const Light& light, uint32_t samples) { return samples > 0 && has_size(light); }
 
-ShadowTarget ReferenceTracer::Impl::centre_of(const Light& light) const {
+std::shared_ptr<const RayScene> ReferenceTracer::Impl::rays_of(const Camera& camera) const {
+  const glm::dvec3 eye(camera.world_from_camera[3]);
+  const std::lock_guard lock(mutex_);
+  if (!rays_ || rays_->origin() != eye) rays_ = std::make_shared<const RayScene>(scene, eye);
+  return rays_;
+}
+
+ShadowTarget centre_of(const Light& light, const RayScene& rays) {
   if (light.type == LightType::directional)
     return {glm::normalize(glm::dvec3(light.world_from_light[2])), true};
   return {glm::dvec3(light.world_from_light[3]) - rays.origin(), false};
@@ -220,14 +237,15 @@ Reference ReferenceTracer::trace(const ReferenceSettings& settings) const {
   Reference result =
       empty_reference(settings.width, settings.height, static_cast<uint32_t>(scene.lights.size()));
   result.samples = any_area ? settings.samples : 1;
-  const PrimaryRays primary(scene.cameras[settings.camera], impl_->rays.origin(), settings.width,
-                            settings.height);
-  const PixelShader shader(*impl_, any_area ? settings.samples : 0);
+  const Camera& camera = scene.cameras[settings.camera];
+  const std::shared_ptr<const RayScene> rays = impl_->rays_of(camera);
+  const PrimaryRays primary(camera, rays->origin(), settings.width, settings.height);
+  const PixelShader shader(scene, *rays, any_area ? settings.samples : 0);
   std::vector<NoiseSum> noise(settings.height);
   parallel_rows(settings.height, settings.progress, [&](uint32_t y) {
     for (uint32_t x = 0; x < settings.width; ++x) {
-      const auto hit = impl_->rays.first_hit(primary.eye, primary.direction(x, y), primary.near);
-      if (!hit) continue;
+      const auto hit = rays->first_hit(primary.eye, primary.direction(x, y), primary.near);
+      if (!hit || hit->distance > primary.far) continue;
       const size_t pixel = size_t{y} * settings.width + x;
       store_surface(result, *hit, primary.eye, pixel);
       shader.shade(result, *hit, pixel, noise[y]);

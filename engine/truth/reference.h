@@ -19,11 +19,18 @@ struct Reference {
     counted = 0,
     no_geometry = 1,
     faces_away = 2,
-    outside_light = 3
+    outside_light = 3,
+    edge_on = 4  // the geometric normal is at right angles to the light's direction, within least_facing
   };
+  // Cosine of the angle to the light below which rounding decides whether a surface faces it: twice the
+  // largest error of an octahedral normal of 16 bits (6.5e-5), which the G-buffer rounds the triangle's to
+  // once more.
+  static constexpr double least_facing = 1.4e-4;
+
   uint32_t width = 0, height = 0, lights = 0, samples = 1;  // samples per light (1: point, hard)
-  std::vector<std::vector<float>> visibility;  // [light]: 0 = umbra, 1 = lit; faces_away is 0, no_geometry 1
-  std::vector<std::vector<uint8_t>> domain;    // [light]
+  std::vector<std::vector<float>>
+      visibility;  // [light]: 0 = umbra, 1 = lit; faces_away and edge_on 0, no_geometry 1
+  std::vector<std::vector<uint8_t>> domain;  // [light]
   std::vector<float> depth;               // distance along the view axis, world units; infinity: no geometry
   std::vector<glm::vec3> position;        // relative to the camera's eye
   std::vector<glm::vec3> normal;          // geometric, turned to the camera on double-sided meshes
@@ -35,7 +42,7 @@ struct Reference {
 struct ReferenceSettings {
   uint32_t width = 1280, height = 720;
   uint32_t samples =
-      0;  // 0: hard shadows of the lights' centres; N: N Owen-scrambled Sobol samples on area lights
+      0;  // 0: hard shadows of the lights' centres; N: N Owen-scrambled Sobol samples on lights with a size
   uint32_t camera = 0;                   // index into Scene::cameras
   std::function<void(double)> progress;  // 0..1; may be empty
 };

@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/scene/area_light.h"
 #include "engine/truth/reference_tracer.h"
 
@@ -21,9 +21,9 @@ struct Plane {
 // The faces of one light's map and where their texels meet a plane. Positions relative to the rays' origin.
 class TexelGrid {
  public:
-  TexelGrid(const std::vector<LightFace>& faces, uint32_t light, uint32_t map_size, const glm::dvec3& origin)
+  TexelGrid(const std::vector<LightView>& faces, uint32_t light, uint32_t map_size, const glm::dvec3& origin)
       : map_size_(map_size) {
-    for (const LightFace& face : faces) {
+    for (const LightView& face : faces) {
       if (face.light != light) continue;
       // Rigid, so that the shift to the origin stays in double.
       glm::dmat4 from_origin = face.light_from_world;
@@ -69,7 +69,7 @@ class TexelGrid {
 
  private:
   struct Frame {
-    LightFace face;
+    LightView face;
     glm::dmat4 from_origin;
     glm::dmat3 to_origin;
   };
@@ -98,7 +98,7 @@ std::vector<ShadowTarget> targets_of(const Light& light, const ShadowTarget& cen
   if (!on_light(*light.area, glm::dvec2(0.0))) targets.clear();
   const glm::dmat3 axes(light.world_from_light);
   for (const glm::dvec3& point : border_points(*light.area))
-    targets.push_back({centre.value + axes * point, false});
+    targets.push_back({centre.value + axes * point, centre.infinite});
   return targets;
 }
 
@@ -122,17 +122,18 @@ std::vector<bool> ReferenceTracer::away_from_edges(const Reference& reference, u
                                                    const Camera& camera, const std::vector<uint32_t>& pixels,
                                                    double texels, uint32_t map_size) const {
   const Scene& scene = impl_->scene;
-  const RayScene& rays = impl_->rays;
+  const std::shared_ptr<const RayScene> traced = impl_->rays_of(camera);
+  const RayScene& rays = *traced;
   if (light >= scene.lights.size() || light >= reference.lights)
     fail(fmt::format("no light {}: the scene has {}", light, scene.lights.size()), scene.file.string());
   if (map_size == 0 || !(texels >= 0))
     fail("distance to edges: the map's size and the distance must be positive");
-  const TexelGrid grid(light_faces(scene, map_size, 0), light, map_size, rays.origin());
+  const TexelGrid grid(light_views(scene, map_size, 0), light, map_size, rays.origin());
   if (grid.empty()) fail(fmt::format("light {} has no map face", light), scene.file.string());
   const glm::dvec3 eye = glm::dvec3(camera.world_from_camera[3]) - rays.origin();
   const auto offsets = disc(texels);
   const auto targets =
-      targets_of(scene.lights[light], impl_->centre_of(scene.lights[light]),
+      targets_of(scene.lights[light], centre_of(scene.lights[light], rays),
                  is_area(scene.lights[light], reference.samples > 1 ? reference.samples : 0));
 
   const auto is_away = [&](uint32_t pixel) {

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "engine/base/error.h"
+#include "engine/base/printable.h"
 #include "engine/truth/reference.h"
 #include "engine/truth/reference_tracer.h"
 
@@ -151,7 +152,8 @@ void hash_texture(KeyHash& hash, const Texture& t) {
   hash.value(t.width);
   hash.value(t.height);
   hash.array(t.rgba);
-  for (const bool flag : {t.repeat_u, t.repeat_v, t.nearest}) hash.value(uint8_t{flag});
+  for (const Wrap wrap : {t.wrap_u, t.wrap_v}) hash.value(static_cast<uint8_t>(wrap));
+  hash.value(uint8_t{t.nearest});
 }
 
 // Intensity and colour do not change visibility.
@@ -172,6 +174,7 @@ void hash_light(KeyHash& hash, const Light& light) {
 void hash_view(KeyHash& hash, const Camera& camera, const ReferenceSettings& settings) {
   hash.values(camera.world_from_camera);
   for (const double v : {camera.fov_y, camera.near, camera.aspect.value_or(-1.0)}) hash.value(v);
+  if (camera.far) hash.value(*camera.far);
   for (const uint32_t v : {settings.width, settings.height, settings.samples}) hash.value(v);
 }
 
@@ -182,9 +185,9 @@ std::optional<Reference> read_cached(const std::filesystem::path& file, const st
   try {
     const Image image = read_exr(file);
     if (image.comment == key) return reference_from_image(image, file);
-    spdlog::warn("{}: the cached reference is of something else: traced again", file.string());
+    spdlog::warn("{}: the cached reference is of something else: traced again", printable(file.string()));
   } catch (const Error& e) {
-    spdlog::warn("{}; traced again", e.what());
+    spdlog::warn("{}; traced again", printable(e.what()));
   }
   return std::nullopt;
 }
@@ -214,7 +217,7 @@ Reference reference_from_image(const Image& image, const std::filesystem::path& 
   r.width = image.width, r.height = image.height;
   for (; r.lights == 0 || image.has(light_prefix(r.lights) + "Y"); ++r.lights) {
     r.visibility.push_back(reader.scalar(light_prefix(r.lights) + "Y", 0, 1));
-    const auto domain = reader.scalar(light_prefix(r.lights) + "domain", 0, 3);
+    const auto domain = reader.scalar(light_prefix(r.lights) + "domain", 0, Reference::edge_on);
     r.domain.emplace_back(domain.begin(), domain.end());
   }
   r.depth = reader.scalar("Z", 0, std::numeric_limits<float>::infinity());
@@ -243,6 +246,7 @@ std::string reference_key(const Scene& scene, const ReferenceSettings& settings)
   for (const Instance& instance : scene.instances) {
     hash.value(instance.mesh);
     hash.values(instance.world_from_object);
+    if (!instance.visible) hash.value(uint8_t{0});
   }
   for (const Light& light : scene.lights) hash_light(hash, light);
   hash_view(hash, scene.cameras[settings.camera], settings);
@@ -263,7 +267,7 @@ Reference cached_reference(const Scene& scene, const ReferenceSettings& settings
     image.comment = key;
     write_exr(file, image);
   } catch (const Error& e) {  // the result is good even where the cache is not
-    spdlog::warn("{}; the reference is not cached", e.what());
+    spdlog::warn("{}; the reference is not cached", printable(e.what()));
   }
   return reference;
 }

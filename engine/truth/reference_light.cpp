@@ -1,3 +1,4 @@
+// Samples an area light as a point of the scene sees it.
 #include "engine/truth/reference_light.h"
 
 #include <algorithm>
@@ -40,10 +41,11 @@ std::optional<LightSample> AreaView::sample(const glm::dvec2& u) const {
   return result;
 }
 
-AreaSampler::AreaSampler(const Scene& scene, const Light& light, const glm::dvec3& centre) {
+AreaSampler::AreaSampler(const Scene& scene, const Light& light, const ShadowTarget& centre) {
   view_.scene_ = &scene;
   view_.area_ = &*light.area;
-  view_.centre_ = centre;
+  view_.centre_ = centre.value;
+  view_.infinite_ = centre.infinite;
   view_.edge_x_ = light.area->width * glm::dvec3(light.world_from_light[0]);
   view_.edge_y_ = light.area->height * glm::dvec3(light.world_from_light[1]);
   if (light.area->shape == Shape::polygon)

@@ -1,3 +1,4 @@
+// Small commands that several parts of the engine record: barriers, clears, mip levels.
 #include "engine/vulkan/commands.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Opens a Vulkan device: picks one, checks its features, makes its queue.
 #include "engine/vulkan/device.h"
 
 #include <fmt/format.h>
@@ -8,11 +9,13 @@
 #include <cstring>
 
 #include "engine/base/error.h"
+#include "engine/vulkan/pipeline_store.h"
 
 namespace gnomon {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+constexpr size_t kPipelinesKept = 64;  // several techniques with all their variants
 constexpr const char* kNoDeviceHint =
     "install a Vulkan driver; without a GPU, Mesa's lavapipe (Debian: mesa-vulkan-drivers)";
 
@@ -75,13 +78,35 @@ VkInstance bare_instance() {
   return instance;
 }
 
+struct ResultName {
+  VkResult result;
+  const char *name, *what;
+};
+constexpr ResultName results[] = {
+    {VK_ERROR_INITIALIZATION_FAILED, "VK_ERROR_INITIALIZATION_FAILED", "the driver cannot begin"},
+    {VK_ERROR_DEVICE_LOST, "VK_ERROR_DEVICE_LOST", "the device is lost: it crashed or took too long"},
+    {VK_ERROR_MEMORY_MAP_FAILED, "VK_ERROR_MEMORY_MAP_FAILED", "the device's memory cannot be mapped"},
+    {VK_ERROR_LAYER_NOT_PRESENT, "VK_ERROR_LAYER_NOT_PRESENT", "a layer is not installed"},
+    {VK_ERROR_EXTENSION_NOT_PRESENT, "VK_ERROR_EXTENSION_NOT_PRESENT", "an extension is missing"},
+    {VK_ERROR_FEATURE_NOT_PRESENT, "VK_ERROR_FEATURE_NOT_PRESENT", "a feature is missing"},
+    {VK_ERROR_INCOMPATIBLE_DRIVER, "VK_ERROR_INCOMPATIBLE_DRIVER", "the driver is too old"},
+    {VK_ERROR_TOO_MANY_OBJECTS, "VK_ERROR_TOO_MANY_OBJECTS", "there are too many objects of this kind"},
+    {VK_ERROR_FORMAT_NOT_SUPPORTED, "VK_ERROR_FORMAT_NOT_SUPPORTED", "the device has no such format"},
+    {VK_ERROR_FRAGMENTED_POOL, "VK_ERROR_FRAGMENTED_POOL", "a pool is fragmented"},
+    {VK_ERROR_OUT_OF_POOL_MEMORY, "VK_ERROR_OUT_OF_POOL_MEMORY", "a pool is exhausted"},
+    {VK_ERROR_UNKNOWN, "VK_ERROR_UNKNOWN", "the driver refuses without a reason"}};
+
 }  // namespace
 
 void check(VkResult result, const char* call) {
   if (result >= 0) return;
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
     fail(fmt::format("out of memory in {}", call), {}, {}, "use a smaller --size or shadow map");
-  fail(fmt::format("{} failed with VkResult {}", call, int(result)));
+  for (const auto& [known, name, what] : results)
+    if (known == result)
+      fail(fmt::format("{}: {} ({})", call, what, name), {}, {}, "another --device may do");
+  fail(fmt::format("{}: the driver fails with the unknown result {}", call, int(result)), {}, {},
+       "another --device may do");
 }
 
 Device::Device(const DeviceOptions& options) {
@@ -98,6 +123,7 @@ Device::Device(const DeviceOptions& options) {
 Device::~Device() { destroy(); }
 
 void Device::destroy() {
+  pipelines_.reset();
   if (device_) vkDestroyDevice(device_, nullptr);
   if (messenger_) destroy_messenger_(instance_, messenger_, nullptr);
   if (instance_) vkDestroyInstance(instance_, nullptr);
@@ -178,24 +204,46 @@ void Device::choose_physical(const std::string& name_part) {
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
 }
 
+// All that is missing at once.
 void Device::check_features() {
-  VkPhysicalDeviceVulkan12Features have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceFeatures2 asked{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &have, {}};
+  VkPhysicalDeviceVulkan13Features f13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceVulkan12Features f12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &f13};
+  VkPhysicalDeviceFeatures2 asked{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &f12, {}};
   vkGetPhysicalDeviceFeatures2(physical_, &asked);
-  if (!have.shaderOutputLayer)
-    fail(fmt::format("'{}' cannot choose a layer in the vertex shader", info_.name), {}, {},
-         "Gnomon needs the Vulkan 1.2 feature shaderOutputLayer");
+  const VkPhysicalDeviceFeatures& f10 = asked.features;
   VkPhysicalDeviceVulkan13Properties sizes{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES};
   VkPhysicalDeviceVulkan11Properties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
                                                &sizes};
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups, {}};
   vkGetPhysicalDeviceProperties2(physical_, &properties);
   subgroup_size_ = subgroups.subgroupSize;
-  if (!(subgroups.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) || subgroup_size_ < 4 ||
-      !(sizes.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT))
-    fail(fmt::format("'{}' has no compute subgroups that can shuffle", info_.name), {}, {},
-         "Gnomon needs subgroups of 4 invocations or more, VK_SUBGROUP_FEATURE_SHUFFLE_BIT, and compute in "
-         "requiredSubgroupSizeStages");
+  const bool shuffles = subgroups.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+  const struct {
+    bool there;
+    const char* what;
+  } needed[] = {
+      {f10.geometryShader == VK_TRUE, "geometryShader (a triangle's number in the fragment shader)"},
+      {f10.depthClamp == VK_TRUE, "depthClamp"},
+      {f10.occlusionQueryPrecise == VK_TRUE, "occlusionQueryPrecise"},
+      {f10.fragmentStoresAndAtomics == VK_TRUE, "fragmentStoresAndAtomics"},
+      {f10.shaderClipDistance == VK_TRUE, "shaderClipDistance"},
+      {f10.independentBlend == VK_TRUE, "independentBlend"},
+      {f10.imageCubeArray == VK_TRUE, "imageCubeArray"},
+      {f12.shaderOutputLayer == VK_TRUE, "shaderOutputLayer (a layer chosen in the vertex shader)"},
+      {f13.synchronization2 == VK_TRUE, "synchronization2"},
+      {f13.dynamicRendering == VK_TRUE, "dynamicRendering"},
+      {f13.maintenance4 == VK_TRUE, "maintenance4"},
+      {f13.subgroupSizeControl == VK_TRUE, "subgroupSizeControl"},
+      {shuffles && subgroup_size_ >= 4, "subgroups of 4 invocations or more that shuffle"},
+      {(sizes.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0,
+       "compute in requiredSubgroupSizeStages"},
+  };
+  std::string missing;
+  for (const auto& one : needed)
+    if (!one.there) missing += (missing.empty() ? "" : ", ") + std::string(one.what);
+  if (!missing.empty())
+    fail(fmt::format("'{}' lacks what Gnomon needs: {}", info_.name, missing), {}, {},
+         "choose another device (gnomon list devices)");
 }
 
 void Device::make_device() {
@@ -231,6 +279,7 @@ void Device::make_device() {
   info.pQueueCreateInfos = &queue;
   check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+  pipelines_ = std::make_unique<PipelineStore>(device_, kPipelinesKept);
 }
 
 uint32_t Device::memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted) const {

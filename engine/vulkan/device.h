@@ -15,6 +15,8 @@ namespace gnomon {
 // Throws Error naming the Vulkan call when `result` is not a success.
 void check(VkResult result, const char* call);
 
+class PipelineStore;
+
 class Device {
  public:
   explicit Device(const DeviceOptions& options);
@@ -31,6 +33,7 @@ class Device {
   uint32_t subgroup_size() const { return subgroup_size_; }  // invocations, at least 4
   const DeviceInfo& info() const { return info_; }
   double timestamp_period_ns() const { return properties_.limits.timestampPeriod; }
+  PipelineStore& pipelines() { return *pipelines_; }
 
   // Index of a memory type allowed by `type_bits` with all of `wanted`; Error when there is none.
   uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted) const;
@@ -64,6 +67,7 @@ class Device {
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   DeviceInfo info_;
+  std::unique_ptr<PipelineStore> pipelines_;
   std::mutex mutex_;  // the validation layer may call from any thread
   std::vector<std::string> messages_;
   uint64_t bytes_ = 0, peak_bytes_ = 0;

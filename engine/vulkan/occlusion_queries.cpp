@@ -1,3 +1,4 @@
+// Occlusion queries, written in one submission and read at once.
 #include "engine/vulkan/occlusion_queries.h"
 
 #include "engine/base/error.h"

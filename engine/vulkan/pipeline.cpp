@@ -1,17 +1,21 @@
+// Makes compute and graphics pipelines.
 #include "engine/vulkan/pipeline.h"
 
 #include <algorithm>
+#include <concepts>
 #include <optional>
 
+#include "engine/vulkan/pipeline_store.h"
 #include "engine/vulkan/vertex.h"
 
 namespace gnomon {
 namespace {
 
+using Words = std::vector<uint32_t>;  // SPIR-V
+
 class Module {
  public:
-  Module(VkDevice device, const ShaderSource& source) : device_(device) {
-    const auto words = compile_shader(source);
+  Module(VkDevice device, const Words& words) : device_(device) {
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     info.codeSize = words.size() * 4;
     info.pCode = words.data();
@@ -29,11 +33,48 @@ class Module {
   VkShaderModule handle_ = VK_NULL_HANDLE;
 };
 
-Pipeline own(const std::shared_ptr<Device>& device, VkPipeline handle, VkPipelineLayout layout,
+// A pipeline of the device's store, which keeps the device alive.
+struct Owned {
+  std::shared_ptr<Device> device;
+  PipelineStore::Held pipeline;
+};
+Pipeline own(const std::shared_ptr<Device>& device, PipelineStore::Held pipeline, VkPipelineLayout layout,
              VkPipelineBindPoint point) {
-  std::shared_ptr<void> owner(
-      nullptr, [device, handle](void*) { vkDestroyPipeline(device->handle(), handle, nullptr); });
-  return {std::move(owner), handle, layout, point};
+  const VkPipeline handle = *pipeline;
+  return {std::make_shared<Owned>(device, std::move(pipeline)), handle, layout, point};
+}
+
+// All that a pipeline is made of, as bytes.
+class Key {
+ public:
+  Key& add(const std::string& text) {
+    add(text.size());
+    bytes_ += text;
+    return *this;
+  }
+  Key& add(const Words& words) {
+    return add(std::string(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t)));
+  }
+  Key& add(std::integral auto value) {
+    const auto wide = uint64_t(value);
+    bytes_.append(reinterpret_cast<const char*>(&wide), sizeof wide);
+    return *this;
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+void add_state(Key& key, const RasterState& state) {
+  key.add(int(state.layout)).add(int(state.topology)).add(int(state.depth)).add(state.colors.size());
+  for (const VkFormat color : state.colors) key.add(int(color));
+  key.add(state.depth_test).add(state.depth_write).add(state.depth_clamp).add(int(state.depth_compare));
+  key.add(int(state.blend)).add(state.color_write);
+  const StencilOps& s = state.stencil;
+  key.add(s.enable).add(int(s.compare)).add(s.reference);
+  for (const VkStencilOp op : {s.front_pass, s.front_depth_fail, s.back_pass, s.back_depth_fail})
+    key.add(int(op));
 }
 
 struct VertexInput {
@@ -98,35 +139,48 @@ bool knows_subgroup_size(const Defines& defines) {
   return std::any_of(defines.begin(), defines.end(), [](const auto& d) { return d.first == kSubgroupSize; });
 }
 
-}  // namespace
-
-Pipeline make_compute_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
-                               const ShaderSource& source, VkPipelineCache cache) {
-  const Module module(device->handle(), source);
+VkPipeline compute_pipeline(const Device& device, VkPipelineLayout layout, const Words& words,
+                            bool subgroup_size, VkPipelineCache cache) {
+  const Module module(device.handle(), words);
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT);
   info.layout = layout;
   VkPipelineShaderStageRequiredSubgroupSizeCreateInfo subgroup{
       VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO};
-  subgroup.requiredSubgroupSize = device->subgroup_size();
-  if (knows_subgroup_size(source.defines)) info.stage.pNext = &subgroup;
+  subgroup.requiredSubgroupSize = device.subgroup_size();
+  if (subgroup_size) info.stage.pNext = &subgroup;
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device->handle(), cache, 1, &info, nullptr, &handle),
+  check(vkCreateComputePipelines(device.handle(), cache, 1, &info, nullptr, &handle),
         "vkCreateComputePipelines");
-  return own(device, handle, layout, VK_PIPELINE_BIND_POINT_COMPUTE);
+  return handle;
 }
 
-Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
-                              const RasterState& state, const std::string& preamble, VkPipelineCache cache) {
-  const Module vertex(device->handle(), {state.vertex, ShaderStage::vertex, preamble, state.defines});
-  std::optional<Module> fragment;
-  std::vector<VkPipelineShaderStageCreateInfo> stages{vertex.stage(VK_SHADER_STAGE_VERTEX_BIT)};
-  if (!state.fragment.empty()) {
-    fragment.emplace(device->handle(),
-                     ShaderSource{state.fragment, ShaderStage::fragment, preamble, state.defines});
-    stages.push_back(fragment->stage(VK_SHADER_STAGE_FRAGMENT_BIT));
+// Color attachments, and how they blend.
+struct Blending {
+  explicit Blending(const RasterState& state)
+      : each(state.colors.size(), blend_state(state.blend, state.color_write)) {
+    info.attachmentCount = uint32_t(each.size());
+    info.pAttachments = each.data();
   }
+  Blending(const Blending&) = delete;
+  Blending& operator=(const Blending&) = delete;
+  std::vector<VkPipelineColorBlendAttachmentState> each;
+  VkPipelineColorBlendStateCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
+};
 
+VkPipelineRenderingCreateInfo rendering_info(const RasterState& state) {
+  VkPipelineRenderingCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
+  info.colorAttachmentCount = uint32_t(state.colors.size());
+  info.pColorAttachmentFormats = state.colors.data();
+  info.depthAttachmentFormat = state.depth;
+  info.stencilAttachmentFormat =
+      state.depth == VK_FORMAT_D32_SFLOAT_S8_UINT ? state.depth : VK_FORMAT_UNDEFINED;
+  return info;
+}
+
+VkPipeline raster_pipeline(const Device& device, VkPipelineLayout layout, const RasterState& state,
+                           const std::vector<VkPipelineShaderStageCreateInfo>& stages,
+                           VkPipelineCache cache) {
   const VertexInput in = vertex_input(state.layout);
   VkPipelineVertexInputStateCreateInfo vertex_state{
       VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
@@ -146,22 +200,13 @@ Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineL
   VkPipelineMultisampleStateCreateInfo samples{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
   const auto depth_stencil = depth_stencil_state(state);
-  const std::vector<VkPipelineColorBlendAttachmentState> blends(state.colors.size(),
-                                                                blend_state(state.blend, state.color_write));
-  VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
-  blend.attachmentCount = uint32_t(blends.size());
-  blend.pAttachments = blends.data();
+  const Blending blending(state);
   const VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
                                     VK_DYNAMIC_STATE_CULL_MODE};
   VkPipelineDynamicStateCreateInfo dynamics{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
   dynamics.dynamicStateCount = uint32_t(std::size(dynamic));
   dynamics.pDynamicStates = dynamic;
-  VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
-  rendering.colorAttachmentCount = uint32_t(state.colors.size());
-  rendering.pColorAttachmentFormats = state.colors.data();
-  rendering.depthAttachmentFormat = state.depth;
-  rendering.stencilAttachmentFormat =
-      state.depth == VK_FORMAT_D32_SFLOAT_S8_UINT ? state.depth : VK_FORMAT_UNDEFINED;
+  const VkPipelineRenderingCreateInfo rendering = rendering_info(state);
 
   VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
   info.stageCount = uint32_t(stages.size());
@@ -172,13 +217,48 @@ Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineL
   info.pRasterizationState = &raster;
   info.pMultisampleState = &samples;
   info.pDepthStencilState = &depth_stencil;
-  info.pColorBlendState = &blend;
+  info.pColorBlendState = &blending.info;
   info.pDynamicState = &dynamics;
   info.layout = layout;
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(device->handle(), cache, 1, &info, nullptr, &handle),
+  check(vkCreateGraphicsPipelines(device.handle(), cache, 1, &info, nullptr, &handle),
         "vkCreateGraphicsPipelines");
-  return own(device, handle, layout, VK_PIPELINE_BIND_POINT_GRAPHICS);
+  return handle;
+}
+
+}  // namespace
+
+// The preamble stands for the layout: set 1 is what it declares, and all else of a layout is the same for
+// all.
+
+Pipeline make_compute_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
+                               const ShaderSource& source, VkPipelineCache cache) {
+  const Words words = compile_shader(source);
+  const bool subgroup_size = knows_subgroup_size(source.defines);
+  const Key key =
+      Key().add(int(VK_PIPELINE_BIND_POINT_COMPUTE)).add(source.preamble).add(words).add(subgroup_size);
+  const auto make = [&] { return compute_pipeline(*device, layout, words, subgroup_size, cache); };
+  return own(device, device->pipelines().get(key.bytes(), make), layout, VK_PIPELINE_BIND_POINT_COMPUTE);
+}
+
+Pipeline make_raster_pipeline(const std::shared_ptr<Device>& device, VkPipelineLayout layout,
+                              const RasterState& state, const std::string& preamble, VkPipelineCache cache) {
+  const Words vertex = compile_shader({state.vertex, ShaderStage::vertex, preamble, state.defines});
+  Words fragment;
+  if (!state.fragment.empty())
+    fragment = compile_shader({state.fragment, ShaderStage::fragment, preamble, state.defines});
+  Key key = Key().add(int(VK_PIPELINE_BIND_POINT_GRAPHICS)).add(preamble).add(vertex).add(fragment);
+  add_state(key, state);
+  const auto make = [&] {
+    const Module vertex_module(device->handle(), vertex);
+    std::optional<Module> fragment_module;
+    std::vector<VkPipelineShaderStageCreateInfo> stages{vertex_module.stage(VK_SHADER_STAGE_VERTEX_BIT)};
+    if (!fragment.empty())
+      stages.push_back(
+          fragment_module.emplace(device->handle(), fragment).stage(VK_SHADER_STAGE_FRAGMENT_BIT));
+    return raster_pipeline(*device, layout, state, stages, cache);
+  };
+  return own(device, device->pipelines().get(key.bytes(), make), layout, VK_PIPELINE_BIND_POINT_GRAPHICS);
 }
 
 }  // namespace gnomon

@@ -1,3 +1,4 @@
+// Copies device images to the CPU.
 #include "engine/vulkan/readback.h"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/format.h"
+#include "engine/image/srgb.h"
 
 namespace gnomon {
 namespace {
@@ -21,6 +23,7 @@ uint32_t components(VkFormat format) {
     case VK_FORMAT_R32G32_SFLOAT:
       return 2;
     case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_R8G8B8A8_SRGB:
     case VK_FORMAT_R16G16B16A16_SFLOAT:
     case VK_FORMAT_R16G16B16A16_UNORM:
     case VK_FORMAT_R32G32B32A32_UINT:
@@ -43,6 +46,8 @@ float component(VkFormat format, const std::byte* texel, uint32_t c) {
     case VK_FORMAT_R8_UNORM:
     case VK_FORMAT_R8G8B8A8_UNORM:
       return float(load<uint8_t>(texel + c)) / 255.0f;
+    case VK_FORMAT_R8G8B8A8_SRGB:  // linear; alpha is as it is
+      return c < 3 ? srgb_decode(load<uint8_t>(texel + c)) : float(load<uint8_t>(texel + c)) / 255.0f;
     case VK_FORMAT_R16_SFLOAT:
     case VK_FORMAT_R16G16_SFLOAT:
     case VK_FORMAT_R16G16B16A16_SFLOAT:

@@ -1,3 +1,4 @@
+// Buffers, images and their memory.
 #include "engine/vulkan/resources.h"
 
 #include <fmt/format.h>
@@ -163,7 +164,7 @@ Buffer upload_buffer(const std::shared_ptr<Device>& device, std::span<const std:
                      VkBufferUsageFlags usage) {
   const uint64_t size = std::max<uint64_t>(bytes.size(), 16);  // Vulkan has no empty buffers
   Buffer staging(device, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Place::host);
-  std::memcpy(staging.bytes().data(), bytes.data(), bytes.size());
+  if (!bytes.empty()) std::memcpy(staging.bytes().data(), bytes.data(), bytes.size());
   Buffer result(device, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, Place::device);
   OneShot once(device);
   VkBufferCopy copy{0, 0, size};

@@ -1,3 +1,4 @@
+// From a GLSL file to SPIR-V: includes, compilation, the disk cache.
 #include "engine/vulkan/shader.h"
 
 #include <fmt/format.h>
@@ -43,10 +44,9 @@ fs::path resolve_include(const std::string& name, const fs::path& from, int line
   fail(fmt::format("no such include file '{}'", name), from.string(), fmt::format("line {}", line));
 }
 
-void expand(const fs::path& file, std::set<fs::path>& seen, std::string& out) {
-  if (!seen.insert(fs::weakly_canonical(file)).second) return;
-  std::istringstream in(read_input_file(file));
-  out += fmt::format("#line 1 \"{}\"\n", file.string());
+void expand(const fs::path& file, std::set<fs::path>& seen, std::string& out);
+
+void expand_lines(std::istream& in, const fs::path& file, std::set<fs::path>& seen, std::string& out) {
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     const std::string name = included_path(line);
@@ -57,6 +57,13 @@ void expand(const fs::path& file, std::set<fs::path>& seen, std::string& out) {
     expand(resolve_include(name, file, number), seen, out);
     out += fmt::format("#line {} \"{}\"\n", number + 1, file.string());
   }
+}
+
+void expand(const fs::path& file, std::set<fs::path>& seen, std::string& out) {
+  if (!seen.insert(fs::weakly_canonical(file)).second) return;
+  std::istringstream in(read_input_file(file));
+  out += fmt::format("#line 1 \"{}\"\n", file.string());
+  expand_lines(in, file, seen, out);
 }
 
 EShLanguage language(ShaderStage stage) {
@@ -92,8 +99,12 @@ std::string full_text(const ShaderSource& source, const fs::path& file) {
   if (source.stage == ShaderStage::vertex) text += "#extension GL_ARB_shader_viewport_layer_array : enable\n";
   text += fmt::format("#define {} 1\n", stage_define(source.stage));
   for (const auto& [name, value] : source.defines) text += fmt::format("#define {} {}\n", name, value);
-  text += "#line 1 \"generated preamble\"\n" + source.preamble + "\n";
-  return text + expand_includes(file);
+  text += "#line 1 \"generated preamble\"\n";
+  std::set<fs::path> seen;
+  std::istringstream preamble(source.preamble + "\n");
+  expand_lines(preamble, shader_folder() / "generated preamble", seen, text);
+  expand(file, seen, text);
+  return text;
 }
 
 std::vector<uint32_t> to_spirv(const std::string& text, ShaderStage stage, const fs::path& file) {

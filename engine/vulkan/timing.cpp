@@ -1,3 +1,4 @@
+// Timestamps at pass boundaries.
 #include "engine/vulkan/timing.h"
 
 #include "engine/base/error.h"

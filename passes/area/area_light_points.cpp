@@ -1,6 +1,8 @@
+// Point samples of the scene's area lights.
 #include "passes/area/area_light_points.h"
 
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {

@@ -1,14 +1,23 @@
+// The pass area_refine: samples of each area light, refined level by level of a quad-tree.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <string>
 
 #include "engine/base/divide_up.h"
 #include "engine/base/error.h"
+#include "engine/graph/pass.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
+#include "engine/light/view_set.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
+#include "engine/vulkan/occlusion_queries.h"
 #include "passes/area/area_light_points.h"
 #include "passes/area/area_words.h"
 #include "passes/area/map_cache.h"
@@ -28,7 +37,7 @@ uint32_t most_questions(int64_t levels) { return levels == 0 ? 1 : 1u << (2 * (l
 // One light's samples, and where they are among all.
 struct LightState {
   uint32_t first = 0, capacity = 0;  // slots; `first` is a multiple of kWordSamples
-  std::vector<uint32_t> faces;
+  std::vector<uint32_t> views;
   std::optional<LightQuads> tree;  // none: the light is a point
   uint32_t rendered = 0;           // samples whose maps have been rendered
   bool needed = true;              // some caster's shadow can be in view
@@ -66,8 +75,10 @@ class AreaRefine : public Pass {
     const bool cache =
         d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
     constexpr double kShare = 0.25;  // of the memory limit: area_words.cpp takes the rest
+    const uint32_t views = SampleMaps::declare_views(d);
     const ImageShape visibility = SampleMaps::declare(d, cache ? wanted : kWordSamples, cache, kShare);
-    declare_sample_outputs(d, visibility.extent, wanted);
+    const uint32_t slots = declare_sample_outputs(d, visibility.extent, wanted);
+    SampleMaps::declare_samples(d, views, uint64_t(slots) * views);
     d.output_buffer("answers", Access::transfer_write | Access::host_read,
                     {uint64_t(2) * d.setting().lights * most_questions(levels), 4, "uint"},
                     "of each quad asked about: pixels with banding, and whether the query was answered");
@@ -82,7 +93,7 @@ class AreaRefine : public Pass {
 
   void prepare(Environment& e) override {
     const Params& p = e.params();
-    find_.prepare(e, "area/area_refine_find.glsl");
+    find_.prepare(e, "area/area_refine_find.glsl", {{"PART_NO_CASTERS", std::to_string(kNoCasters)}});
     walk_.prepare(e, "area/area_refine_walk.glsl");
     transpose_ = e.compute("area/area_refine_transpose.glsl");
     RasterState state;
@@ -95,7 +106,7 @@ class AreaRefine : public Pass {
     const uint32_t lights = uint32_t(e.scene().lights.size());
     queries_ = e.occlusion_queries(lights * most_questions(p.integer("levels")));
     place_lights(e);
-    maps_.prepare(e, slots_ * kMostFaces);
+    maps_.prepare(e);
     batch_ = std::min(maps_.layers(), kWordSamples);
     cache_.resize(maps_.layers(), p.flag("cache") ? batch_ : maps_.layers());
     if (p.flag("cache") && maps_.layers() <= batch_)
@@ -145,15 +156,14 @@ class AreaRefine : public Pass {
   }
 
  private:
-  static constexpr uint32_t kMostFaces = 6;  // of a light
-  static constexpr uint32_t kNoCasters = 1;  // as in shaders/glsl/area/area_refine_find.glsl
+  static constexpr uint32_t kNoCasters = 1;  // a push: there are no maps
 
   // Slots: area lights share what there is; a point takes one word.
   void place_lights(Environment& e) {
     const Scene& scene = e.scene();
     lights_.resize(scene.lights.size());
-    const auto& faces = e.gpu_scene().faces();
-    for (uint32_t i = 0; i < faces.size(); ++i) lights_[faces[i].light].faces.push_back(i);
+    const auto& views = e.views("views").views;
+    for (uint32_t i = 0; i < views.size(); ++i) lights_[views[i].light].views.push_back(i);
     slots_ = e.shape("values").layers;
     const SceneFacts& facts = e.scene_facts();
     uint32_t areas = 0;
@@ -181,8 +191,9 @@ class AreaRefine : public Pass {
   void begin(Context& c) {
     maps_.begin(c);
     turns_ = maps_rendered_ = 0;
-    for (uint32_t face = 0; face < c.scene().faces().size(); ++face)
-      if (c.scene().light_changed(c.scene().faces()[face].light)) cache_.forget(face);
+    const ViewSet& set = c.views("views");
+    for (uint32_t view = 0; view < set.views.size(); ++view)
+      if (set.changed[set.views[view].light]) cache_.forget(view);
     if (c.scene().casters_changed()) cache_.forget();
     const Scene& scene = c.scene().scene();
     for (uint32_t i = 0; i < lights_.size(); ++i) {
@@ -197,7 +208,7 @@ class AreaRefine : public Pass {
     }
   }
 
-  // --- a turn: new samples ---
+  // --- an iteration: new samples ---
 
   void sample(Context& c, uint32_t index) {
     LightState& light = lights_[index];
@@ -206,54 +217,54 @@ class AreaRefine : public Pass {
     for (uint32_t at = from; at < count;) {
       const uint32_t bit = at % kWordSamples;
       const uint32_t batch = std::min({count - at, kWordSamples - bit, batch_});
-      for (const uint32_t face : light.faces) evaluate(c, index, face, at, batch);
+      for (const uint32_t view : light.views) evaluate(c, index, view, at, batch);
       at += batch;
     }
     light.rendered = count;
   }
 
-  // Where a face's sample is in the buffer of samples.
-  uint32_t sample_index(const LightState& light, uint32_t face, uint32_t sample) const {
+  // Where a view's sample is in the buffer of samples.
+  uint32_t sample_index(const LightState& light, uint32_t view, uint32_t sample) const {
     const auto which =
-        uint32_t(std::find(light.faces.begin(), light.faces.end(), face) - light.faces.begin());
+        uint32_t(std::find(light.views.begin(), light.views.end(), view) - light.views.begin());
     return which * slots_ + light.first + sample;
   }
 
   // Where samples [at, at + count) are on the light, local.
-  static std::vector<glm::dvec2> places(const Context& c, const LightState& light, uint32_t face, uint32_t at,
+  static std::vector<glm::dvec2> places(const Context& c, const LightState& light, uint32_t view, uint32_t at,
                                         uint32_t count) {
     if (!light.tree) return {glm::dvec2(0.0)};
-    const AreaLight& area = *c.scene().scene().lights[c.scene().faces()[face].light].area;
+    const AreaLight& area = *c.scene().scene().lights[c.views("views").views[view].light].area;
     std::vector<glm::dvec2> places;
     for (uint32_t i = at; i < at + count; ++i) places.push_back(place_on(area, light.tree->samples()[i]));
     return places;
   }
 
   // Those maps that are not there yet.
-  void render(Context& c, const LightState& light, uint32_t face, uint32_t at, uint32_t count) {
-    const std::vector<glm::dvec2> locals = places(c, light, face, at, count);
-    const MapCache::Placed placed = cache_.place(face, locals);
+  void render(Context& c, const LightState& light, uint32_t view, uint32_t at, uint32_t count) {
+    const std::vector<glm::dvec2> locals = places(c, light, view, at, count);
+    const MapCache::Placed placed = cache_.place(view, locals);
     std::vector<LightPoint> points;
     for (size_t i = 0; i < locals.size(); ++i) points.push_back({locals[i], 1.0, placed.layers[i]});
-    const uint32_t first = sample_index(light, face, at);
-    maps_.write(c, face, first, points);
+    const uint32_t first = sample_index(light, view, at);
+    maps_.write(c, view, first, points);
     for (const MapCache::Run& run : placed.missing) {
-      maps_.render(c, face, first + run.first, run.count, run.layer);
+      maps_.render(c, view, first + run.first, run.count, run.layer);
       maps_rendered_ += run.count;
     }
   }
 
   // Maps of up to a word's samples, and all that is kept of them.
-  void evaluate(Context& c, uint32_t index, uint32_t face, uint32_t at, uint32_t count) {
+  void evaluate(Context& c, uint32_t index, uint32_t view, uint32_t at, uint32_t count) {
     const LightState& light = lights_[index];
-    const uint32_t first = sample_index(light, face, at), slot = light.first + at;
+    const uint32_t first = sample_index(light, view, at), slot = light.first + at;
     const uint32_t word = slot / kWordSamples, bit = slot % kWordSamples;
     c.section("maps");
-    if (light.needed) render(c, light, face, at, count);
+    if (light.needed) render(c, light, view, at, count);
     clear_pixel_list(c);
     c.own_barrier();
     c.section("discontinuities");
-    const AreaPush push{index, face, first, count, 0, bit, {word, light.needed ? 0u : kNoCasters}};
+    const AreaPush push{index, view, first, count, 0, bit, {word, light.needed ? 0u : kNoCasters}};
     c.dispatch_over(find_.ready(c, push), pixels(c));
     c.own_barrier();
     c.section("revectorize");
@@ -266,7 +277,7 @@ class AreaRefine : public Pass {
 
   static Extent pixels(const Context& c) { return c.shape("depth").extent; }
 
-  // --- a turn: questions ---
+  // --- an iteration: questions ---
 
   struct QuadPush {
     std::array<uint32_t, 4> slots;

@@ -1,6 +1,10 @@
+// The pass area_resolve: weighs the refined samples where the camera sees penumbra.
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 #include "passes/area/area_words.h"
 #include "passes/frame/pixel_list.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -13,6 +17,7 @@ class AreaResolve : public Pass {
     const Extent pixels = declare_sample_inputs(d);
     d.output("visibility", Access::storage_write, true, {pixels, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT},
              "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::soft);
     d.output("labels", Access::storage_write, true, {pixels, d.setting().lights, 1, VK_FORMAT_R8_UNORM},
              "visibility map: 0 umbra, 1/2 penumbra, 1 lit; a layer a light");
     declare_pixel_list(d, pixels, "pixels in one light's penumbra");

@@ -1,17 +1,26 @@
+// The pass area_temporal: one point of each area light a frame, accumulated over frames.
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
+#include "engine/graph/pass.h"
+#include "engine/light/light_view.h"
+#include "engine/light/view_set.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 #include "passes/area/sample_maps.h"
 #include "passes/area/temporal_samples.h"
 #include "passes/frame/pixel_list.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
 
-// Bits, as in shaders/glsl/area/area_temporal_query.glsl.
+// Bits of a push; the last: so few frames ago that shadows of then may still be there.
 constexpr uint32_t kLightMoved = 1, kCastersMoved = 2, kShadowsFade = 4;
 constexpr uint32_t kMapLayers = 2;  // of what stands still and of what moves
 
@@ -56,7 +65,9 @@ class AreaTemporal : public Pass {
     d.kind(PassKind::mixed);
     d.summary("Tests every camera pixel against one point of each area light a frame and keeps the tests.");
     d.cite("Schwaerzler 2009, ch. 5, eq. 5.1-5.18");
+    const uint32_t views = SampleMaps::declare_views(d);
     const ImageShape visibility = SampleMaps::declare(d, kMapLayers, false);
+    SampleMaps::declare_samples(d, views, views);
     ImageShape buffer = visibility;
     buffer.format = VK_FORMAT_R32G32B32A32_SFLOAT;
     d.input("history", Access::storage_read, true, "`shadow_buffer` of the frame before");
@@ -69,6 +80,7 @@ class AreaTemporal : public Pass {
              "(negative: a moving caster's shadow), mean distance of blockers along the light's axis, world "
              "units (0: none)");
     d.output("visibility", kBoth, true, visibility, "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::soft);
     declare_pixel_list(d, visibility.extent, "pixels of one light whose tests are too few");
     declare_pixel_list(d, visibility.extent, "pixels of one light that have no history", "fresh",
                        "fresh_arguments");
@@ -84,17 +96,17 @@ class AreaTemporal : public Pass {
     }
     for (uint32_t light = 0; light < scene.lights.size(); ++light) sequences_.emplace_back(scene, light);
     poses_.resize(scene.lights.size());
-    maps_.prepare(e, uint32_t(e.gpu_scene().faces().size()), moving_);
+    maps_.prepare(e, moving_);
     prepare_shaders(e);
   }
 
   void record(Context& c) override {
-    const auto& faces = c.scene().faces();
+    const auto& views = c.views("views").views;
     maps_.begin(c);
     still_frames_ = c.scene().casters_changed() ? 0 : still_frames_ + 1;
-    for (uint32_t face = 0; face < faces.size(); ++face) {
-      if (face > 0) c.own_barrier();  // maps and list are used again
-      sample(c, face);
+    for (uint32_t view = 0; view < views.size(); ++view) {
+      if (view > 0) c.own_barrier();  // maps and list are used again
+      sample(c, view);
     }
     for (size_t light = 0; light < poses_.size(); ++light)
       poses_[light] = c.scene().scene().lights[light].world_from_light;
@@ -106,7 +118,9 @@ class AreaTemporal : public Pass {
 
  private:
   void prepare_shaders(Environment& e) {
-    Defines defines;
+    Defines defines{{"LIGHT_MOVED", std::to_string(kLightMoved)},
+                    {"CASTERS_MOVED", std::to_string(kCastersMoved)},
+                    {"SHADOWS_FADE", std::to_string(kShadowsFade)}};
     if (moving_) defines.emplace_back("MOVING_CASTERS", "1");
     hard_.prepare(e, "area/area_temporal.glsl", defines);
     defines.emplace_back("HISTORY", "1");
@@ -117,28 +131,28 @@ class AreaTemporal : public Pass {
     reprojected_.prepare(e, "area/area_temporal.glsl", defines);
   }
 
-  void sample(Context& c, uint32_t face) {
+  void sample(Context& c, uint32_t view) {
     const Scene& scene = c.scene().scene();
-    const uint32_t light = c.scene().faces()[face].light;
+    const uint32_t light = c.views("views").views[view].light;
     c.section("map");
-    maps_.write(c, face, face, std::array{sequences_[light].at(scene, c.scene().frame().counts.z)});
-    moving_ ? maps_.render_split(c, face, face) : maps_.render(c, face, face, 1, 0);
+    maps_.write(c, view, view, std::array{sequences_[light].at(scene, c.scene().frame().counts.z)});
+    moving_ ? maps_.render_split(c, view, view) : maps_.render(c, view, view, 1, 0);
     if (shines_as_area(scene.lights[light]))
-      accumulate(c, push_of(c, face));
+      accumulate(c, push_of(c, view));
     else
-      test(c, push_of(c, face));
+      test(c, push_of(c, view));
   }
 
-  AreaPush push_of(const Context& c, uint32_t face) const {
-    const uint32_t index = c.scene().faces()[face].light;
+  AreaPush push_of(const Context& c, uint32_t view) const {
+    const uint32_t index = c.views("views").views[view].light;
     const Light& light = c.scene().scene().lights[index];
     const bool first = c.scene().frame().counts.z == 0;
     const bool light_moved = first || poses_[index] != light.world_from_light;
-    AreaPush push{index, face, face, 1, 0, 0};
+    AreaPush push{index, view, view, 1, 0, 0};
     if (light_moved) push.bit |= kLightMoved;
     if (still_frames_ == 0) push.bit |= kCastersMoved;
     if (still_frames_ < frames_to_fade(c.params())) push.bit |= kShadowsFade;
-    const double size = light.area ? std::max(light.area->width, light.area->height) : 0.0;
+    const double size = shines_as_area(light) ? std::max(light.area->width, light.area->height) : 0.0;
     push.part[0] = std::bit_cast<uint32_t>(float(size));
     return push;
   }

@@ -1,17 +1,25 @@
+// The pass area_uniform: the average over points spread evenly on each area light.
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
-#include "engine/light/light_face.h"
+#include "engine/graph/pass.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
+#include "engine/light/view_set.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/scene/scene.h"
 #include "passes/area/area_light_points.h"
 #include "passes/area/sample_maps.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
 
-constexpr uint32_t kFirst = 1, kLast = 2;  // bits, as in shaders/glsl/area/area_uniform.glsl
+constexpr uint32_t kFirst = 1, kLast = 2;  // bits of a push: begins, ends a light's samples
 
 bool is_square(int64_t n) {
   const auto root = int64_t(std::llround(std::sqrt(double(n))));
@@ -31,17 +39,21 @@ class AreaUniform : public Pass {
     if (pattern != "sobol" && !is_square(n)) d.refuse("samples", "a square number for a grid");
     const bool cache =
         d.flag("cache", false, "maps of unchanged lights and casters stay from frame to frame");
-    const ImageShape visibility = SampleMaps::declare(d, uint32_t(n) * d.setting().map_faces, cache);
+    const uint32_t views = SampleMaps::declare_views(d);
+    const ImageShape visibility = SampleMaps::declare(d, uint32_t(n) * views, cache);
+    SampleMaps::declare_samples(d, views, uint64_t(n) * views);
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::soft);
   }
 
   void prepare(Environment& e) override {
-    test_.prepare(e, "area/area_uniform.glsl");
+    test_.prepare(e, "area/area_uniform.glsl",
+                  {{"PART_FIRST", std::to_string(kFirst)}, {"PART_LAST", std::to_string(kLast)}});
     choose_points(e);
     uint32_t capacity = 0;
-    for (const LightFace& face : e.gpu_scene().faces()) capacity += uint32_t(points_[face.light].size());
-    maps_.prepare(e, capacity);
+    for (const LightView& view : e.views("views").views) capacity += uint32_t(points_[view.light].size());
+    maps_.prepare(e);
     cached_ = e.params().flag("cache") && capacity <= maps_.layers();
     if (e.params().flag("cache") && !cached_)
       e.warn("cache: the memory limit holds " + std::to_string(maps_.layers()) + " of " +
@@ -49,14 +61,14 @@ class AreaUniform : public Pass {
   }
 
   void record(Context& c) override {
-    const auto& faces = c.scene().faces();
+    const auto& views = c.views("views").views;
     maps_.begin(c);
     samples_ = rendered_ = 0;
     uint32_t first = 0;
-    for (uint32_t face = 0; face < faces.size(); ++face) {
-      const std::vector<LightPoint>& all = points_[faces[face].light];
-      maps_.write(c, face, first, all);
-      all.empty() ? test(c, face, {}, kFirst | kLast, 0) : sample(c, face, first, all);
+    for (uint32_t view = 0; view < views.size(); ++view) {
+      const std::vector<LightPoint>& all = points_[views[view].light];
+      maps_.write(c, view, first, all);
+      all.empty() ? test(c, view, {}, kFirst | kLast, 0) : sample(c, view, first, all);
       first += uint32_t(all.size());
     }
   }
@@ -81,21 +93,21 @@ class AreaUniform : public Pass {
   }
 
   bool keeps_maps(const Context& c, uint32_t light) const {
-    return cached_ && !c.scene().light_changed(light) && !c.scene().casters_changed();
+    return cached_ && !c.views("views").changed[light] && !c.scene().casters_changed();
   }
 
   // Batch by batch: as many maps as there are layers, then the pixels' tests against them.
-  void sample(Context& c, uint32_t face, uint32_t first, const std::vector<LightPoint>& all) {
-    const uint32_t light = c.scene().faces()[face].light;
+  void sample(Context& c, uint32_t view, uint32_t first, const std::vector<LightPoint>& all) {
+    const uint32_t light = c.views("views").views[view].light;
     float total = 0;  // summed as the shader does, so that a fully lit pixel is 1
     for (const LightPoint& point : all) total += float(point.weight);
     const auto n = uint32_t(all.size());
     const uint32_t batch = cached_ ? SampleMaps::kMostLayers : maps_.layers();
     for (uint32_t at = 0; at < n; at += batch) {
       const uint32_t count = std::min(batch, n - at), layer = cached_ ? first + at : 0;
-      if (!keeps_maps(c, light)) render(c, face, first + at, count, layer);
+      if (!keeps_maps(c, light)) render(c, view, first + at, count, layer);
       const uint32_t part = (at == 0 ? kFirst : 0u) | (at + count == n ? kLast : 0u);
-      test(c, face, {first + at, count, layer}, part, total);
+      test(c, view, {first + at, count, layer}, part, total);
     }
     samples_ += n;
   }
@@ -104,17 +116,17 @@ class AreaUniform : public Pass {
     uint32_t first = 0, count = 0, layer = 0;
   };
   // Without samples: nothing shadows the light's receivers.
-  void test(Context& c, uint32_t face, const Batch& batch, uint32_t part, float total) {
+  void test(Context& c, uint32_t view, const Batch& batch, uint32_t part, float total) {
     c.section("test");
-    const AreaPush push{c.scene().faces()[face].light,         face, batch.first, batch.count, batch.layer, 0,
+    const AreaPush push{c.views("views").views[view].light,    view, batch.first, batch.count, batch.layer, 0,
                         {part, std::bit_cast<uint32_t>(total)}};
     c.dispatch_over(test_.ready(c, push), c.shape("visibility").extent);
     c.own_barrier();
   }
 
-  void render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer) {
+  void render(Context& c, uint32_t view, uint32_t first, uint32_t count, uint32_t layer) {
     c.section("maps");
-    maps_.render(c, face, first, count, layer);
+    maps_.render(c, view, first, count, layer);
     c.own_barrier();
     rendered_ += count;
   }

@@ -1,8 +1,10 @@
+// Buffers and images in which adaptive sampling keeps its samples.
 #include "passes/area/area_words.h"
 
 #include <algorithm>
 
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 
 namespace gnomon {
 namespace {
@@ -23,7 +25,7 @@ uint32_t slots_for(const Declaration& d, Extent pixels, uint32_t wanted) {
 
 }  // namespace
 
-void declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted) {
+uint32_t declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted) {
   const uint32_t slots = slots_for(d, pixels, wanted);
   const uint64_t count = uint64_t(pixels.width) * pixels.height, words = slots / kWordSamples;
   const uint64_t planes = uint64_t(divide_up(pixels.width, kWordSamples)) * pixels.height * slots;
@@ -32,12 +34,13 @@ void declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted) {
                   "a bit a sample: is the pixel on its silhouette (algorithm 6's discontinuity maps)");
   d.output("values", Access::storage_write, true, {pixels, slots, 1, VK_FORMAT_R8_UNORM},
            "a layer a sample: visibility of the pixels on its silhouette, undefined elsewhere");
-  d.keep("values");  // written turn by turn
+  d.keep("values");  // written iteration by iteration
   d.output_buffer("weights", kFromHost, {slots, 4, "float"}, "of each sample, in (6.4)");
   d.output_buffer("sample_ranges", kFromHost, {uint64_t(2) * d.setting().lights, 4, "uint"},
                   "of each light, its first slot and the number of its samples");
   d.transient_buffer("lit_planes", kBoth, {planes, 4, "uint"}, "lit_words by samples: a bit a pixel");
   d.transient_buffer("edge_planes", kBoth, {planes, 4, "uint"}, "edge_words by samples: a bit a pixel");
+  return slots;
 }
 
 Extent declare_sample_inputs(Declaration& d) {

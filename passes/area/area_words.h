@@ -10,8 +10,8 @@ namespace gnomon {
 constexpr uint32_t kWordSamples = 32;
 
 // Outputs `lit_words`, `edge_words`, `values`, `weights`, `sample_ranges`; transients `lit_planes`,
-// `edge_planes`. For `wanted` slots, or as many as three quarters of the memory limit hold.
-void declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted);
+// `edge_planes`. For `wanted` slots, or as many as three quarters of the memory limit hold: returned.
+uint32_t declare_sample_outputs(Declaration& d, Extent pixels, uint32_t wanted);
 // The same as inputs, without the planes. Returns the pixels.
 Extent declare_sample_inputs(Declaration& d);
 

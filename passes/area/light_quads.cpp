@@ -1,3 +1,4 @@
+// The quad-tree that adaptive sampling refines an area light by.
 #include "passes/area/light_quads.h"
 
 #include <algorithm>
@@ -5,6 +6,7 @@
 #include <numeric>
 
 #include "engine/base/error.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {

@@ -1,3 +1,4 @@
+// Assigns layers to the shadow maps of samples, from frame to frame.
 #include "passes/area/map_cache.h"
 
 #include <algorithm>
@@ -15,20 +16,20 @@ void MapCache::forget() {
   for (uint32_t layer = kept_; layer > 0; --layer) free_.push_back(layer - 1);
 }
 
-void MapCache::forget(uint32_t face) {
+void MapCache::forget(uint32_t view) {
   for (auto at = layer_of_.begin(); at != layer_of_.end();) {
-    const bool its = std::get<0>(at->first) == face;
+    const bool its = std::get<0>(at->first) == view;
     if (its) free_.push_back(at->second);
     at = its ? layer_of_.erase(at) : std::next(at);
   }
   std::sort(free_.rbegin(), free_.rend());  // neighbours are rendered together
 }
 
-MapCache::Placed MapCache::place(uint32_t face, std::span<const glm::dvec2> samples) {
+MapCache::Placed MapCache::place(uint32_t view, std::span<const glm::dvec2> samples) {
   Placed placed;
   uint32_t scratch = kept_;
   for (uint32_t i = 0; i < samples.size(); ++i) {
-    const Key key{face, samples[i].x, samples[i].y};
+    const Key key{view, samples[i].x, samples[i].y};
     const auto known = layer_of_.find(key);
     if (known != layer_of_.end()) {
       placed.layers.push_back(known->second);

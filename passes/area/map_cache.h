@@ -23,9 +23,9 @@ class MapCache {
   // Of `layers`, all but the last `scratch` keep their maps; those take what finds no other place.
   void resize(uint32_t layers, uint32_t scratch);
   void forget();               // casters have moved
-  void forget(uint32_t face);  // its light has moved
-  // At most `scratch` samples of a face, by their places on the light.
-  Placed place(uint32_t face, std::span<const glm::dvec2> samples);
+  void forget(uint32_t view);  // its light has moved
+  // At most `scratch` samples of a view, by their places on the light.
+  Placed place(uint32_t view, std::span<const glm::dvec2> samples);
 
  private:
   using Key = std::tuple<uint32_t, double, double>;

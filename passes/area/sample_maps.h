@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "engine/graph/pass.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/render/context.h"
+#include "engine/render/raster.h"
+#include "engine/vulkan/pipeline.h"
+#include "engine/vulkan/resources.h"
 #include "passes/map/receiver_ports.h"
 
 namespace gnomon {
@@ -25,30 +28,34 @@ class SampleMaps {
   // Samples whose bits fit a word of shaders; more are never rendered at a time.
   static constexpr uint32_t kMostLayers = 32;
 
-  // Inputs `depth`, `geometric`; parameters `size`, `bias_constant`, `bias_slope`; transients `maps`,
-  // `areas`, `samples`. The maps take as much of the memory limit as they can use: `wanted` layers at most,
-  // all of them kept from frame to frame when `cache`. `share`: of the limit. Returns the shape of a
-  // visibility image: one layer a light.
+  // Input `views`; returns how many there are.
+  static uint32_t declare_views(Declaration& d);
+  // Inputs `depth`, `geometric`; parameters `size` and those of a shadow test; transient `maps`. The maps
+  // take as much of the memory limit as they can use: `wanted` layers at most, all of them kept from frame to
+  // frame when `cache`. `share`: of the limit. Returns the shape of a visibility image: one layer a light.
   static ImageShape declare(Declaration& d, uint32_t wanted, bool cache, double share = 1);
 
-  // `capacity`: samples at most, over all lights. `split`: render_split() is used instead of render().
-  void prepare(Environment& e, uint32_t capacity, bool split = false);
-  // The frame's light faces.
+  // Transients `areas`, for so many views, and `samples`, for at most `capacity` over all views.
+  static void declare_samples(Declaration& d, uint64_t views, uint64_t capacity);
+
+  // `split`: render_split() is used instead of render().
+  void prepare(Environment& e, bool split = false);
+  // The frame's light views.
   void begin(Context& c);
-  // Writes samples [first, first + points.size()), of the face's light.
-  void write(const Context& c, uint32_t face, uint32_t first, std::span<const LightPoint> points);
+  // Writes samples [first, first + points.size()), of the view's light.
+  void write(const Context& c, uint32_t view, uint32_t first, std::span<const LightPoint> points);
   uint32_t layers() const { return layers_; }
-  // Renders samples [first, first + count) of a face to layers from `layer` on, keeping the others.
-  void render(Context& c, uint32_t face, uint32_t first, uint32_t count, uint32_t layer);
-  // Renders one sample of a face: what stands still to layer 0, instances that some animation moves to
+  // Renders samples [first, first + count) of a view to layers from `layer` on, keeping the others.
+  void render(Context& c, uint32_t view, uint32_t first, uint32_t count, uint32_t layer);
+  // Renders one sample of a view: what stands still to layer 0, instances that some animation moves to
   // layer 1.
-  void render_split(Context& c, uint32_t face, uint32_t sample);
+  void render_split(Context& c, uint32_t view, uint32_t sample);
 
  private:
-  void render(Context& c, uint32_t face, uint32_t first, const Targets& targets, uint32_t count);
+  void render(Context& c, uint32_t view, uint32_t first, const Targets& targets, uint32_t count);
   ScenePipelines pipelines_;
-  Buffer areas_, samples_;          // host-visible
-  std::vector<LightFace> widened_;  // AreaFace, per face
+  Cull cull_ = Cull::none;
+  std::vector<LightView> widened_;  // AreaView, per view
   std::vector<double> converge_;
   uint32_t layers_ = 0, size_ = 1;
 };
@@ -58,7 +65,7 @@ void tell_left_out(Environment& e);
 
 // What area_query.glsl is pushed.
 struct AreaPush {
-  uint32_t light, face, first, count, layer, bit;
+  uint32_t light, view, first, count, layer, bit;
   std::array<uint32_t, 2> part{};
 };
 

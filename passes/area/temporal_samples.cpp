@@ -1,6 +1,8 @@
+// The point samples of an area light that one frame after the other renders.
 #include "passes/area/temporal_samples.h"
 
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 

@@ -1,7 +1,12 @@
+// The pass distance_penumbra: turns the distance to the hard shadow's silhouette into penumbra.
 #include <limits>
 
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/distance/penumbra_width.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -20,15 +25,23 @@ class DistancePenumbra : public Pass {
                    "workgroups (x, y, z) and number of tiles");
     d.input("depth", Access::sampled, false, "the camera's device depth");
     d.input("geometric", Access::sampled, false, "octahedral geometric normal");
-    d.choice("metric", "world", {"world", "screen"}, "distances in the world or in the image");
-    declare_penumbra_width(d, 0.014);
-    d.number("pixels", 15, 1, 16384, "pixels", "width of the penumbra in the screen metric");
-    d.number(
-        "depth_tolerance", 1e-3, 0, 1, "of the view depth",
-        "distance from the receiver's tangent plane at which a silhouette pixel still is on its surface");
+    read_penumbra_traits(d, "nearest");
+    const bool soft =
+        d.optional_input(
+             "width", Access::sampled, true,
+             "of the penumbra at each pixel, world units, instead of one for all: a silhouette pixel's "
+             "counts for those that it is nearest to (world metric)")
+            .has_value();
+    const bool screen = d.choice("metric", "world", {"world", "screen"},
+                                 "distances in the world or in the image") == "screen";
+    const Value* pixels = d.trait("nearest", "pixels");
+    if (screen && pixels && std::get<double>(*pixels) < 1)
+      d.refuse_source("nearest", "was made for a penumbra without a width in pixels");
     d.number("bend", 0.25, 0, 1, "1", "further such distance, per distance between the two");
     d.inout("visibility", Access::storage_read | Access::storage_write, true,
             "in: hard shadow; out: 0 in umbra, 1 lit; a layer a light");
+    d.optional_input_behind("views", "visibility", Access::uniform, "what the shadow map's layers show");
+    makes_shadows(d, "visibility", soft ? ShadowKind::soft : ShadowKind::filtered);
   }
   void prepare(Environment& e) override {
     shade_ = e.compute("distance/distance_penumbra.glsl");
@@ -36,7 +49,8 @@ class DistancePenumbra : public Pass {
     width_ = std::max(float(penumbra_width(e.scene(), e.params())), std::numeric_limits<float>::min());
     e.fact("penumbra_world", width_);
     const double diagonal = 2.0 * e.scene().bounds.radius();
-    if (e.params().choice("metric") == "world" && width_ > widest_penumbra * diagonal)
+    if (e.params().choice("metric") == "world" && !e.connected("width") &&
+        width_ > widest_penumbra * diagonal)
       e.warn("a penumbra this wide, more than a twentieth of the scene's diagonal, dissolves shadows");
   }
   void record(Context& c) override {

@@ -1,3 +1,4 @@
+// The pass distance_transform: for every pixel the nearest site, by one of several algorithms.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,8 @@
 #include "engine/base/error.h"
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/distance/distance_transform_ports.h"
 #include "passes/distance/penumbra_width.h"
 

@@ -1,8 +1,10 @@
+// Parameters and ports of the pass distance_transform, and the units in which it works.
 #include "passes/distance/distance_transform_ports.h"
 
 #include <algorithm>
 
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 #include "passes/distance/penumbra_width.h"
 
 namespace gnomon::distance_transform {
@@ -78,6 +80,7 @@ void declare_ports(Declaration& d) {
   d.cite("Cao et al. 2010; Meijster et al. 2000; Rong and Tan 2006; sites: Macedo 2018, ch. 4.2.2");
   const ImageShape source =
       d.input("source", Access::sampled, true, "the image that has the sites; a layer a light");
+  d.optional_input_behind("views", "source", Access::uniform, "what the shadow map's layers show");
   const bool depth =
       d.optional_input("depth", Access::sampled, false, "the camera's device depth").has_value();
   const bool geometric =
@@ -99,6 +102,7 @@ void declare_ports(Declaration& d) {
   d.number("depth_tolerance", 2.5e-4, 0, 1, "of the view depth",
            "distance from a pixel's tangent plane at which a neighbour is on the same surface");
   declare_images(d, source, algorithm);
+  set_penumbra_traits(d, "nearest");
   if (algorithm == "banded_exact") declare_envelope(d, source);
   declare_lists(d, source, algorithm);
   const bool reaching = bounded(algorithm) && depth && reach;

@@ -10,6 +10,12 @@ namespace gnomon {
 // the first is 0. `relative`: the latter's default. False: both are 0.
 bool declare_penumbra_width(Declaration& d, double relative);
 
+// What distances to a silhouette were found for: the penumbra's width in the world and, as `pixels`, in the
+// image, and `depth_tolerance`, within which silhouette and receiver are one surface. All are parameters of
+// the pass that finds them; a reader takes them from there as derived values.
+void set_penumbra_traits(Declaration& d, const std::string& output);
+void read_penumbra_traits(Declaration& d, const std::string& input);
+
 // World units.
 double penumbra_width(const Scene& scene, const Params& params);
 

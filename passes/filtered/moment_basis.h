@@ -3,26 +3,31 @@
 #pragma once
 
 #include "engine/graph/pass.h"
-#include "engine/render/context.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace gnomon {
 
-// How an image of such a map is laid out: `layers` to a face of the light.
+// How an image of such a map is laid out: `layers` to a view of the light.
 struct MomentLayout {
   VkFormat format = VK_FORMAT_UNDEFINED;
   uint32_t layers = 1;
 };
 
-// Parameters `basis`, `space`, `precision`, `exponent`, `negative_exponent`,
-// `terms`; both the pass that transforms and the one that reads must have the
-// same values. Exponents that overflow the format are refused.
+// Of the pass that transforms: parameters `basis`, `space`, `precision`, `exponent`, `negative_exponent`,
+// `terms`. Exponents that overflow the format are refused.
 MomentLayout declare_basis(Declaration& d);
+// ... and, once it is declared, what the output that has them says of itself.
+void set_basis(Declaration& d, const std::string& output);
 
-// Parameters `space` and `exponent` alone, as the filter needs them.
-std::string declare_space(Declaration& d);
-double declare_exponent(Declaration& d, double standard);
+// Of the pass that reads the transform: the same as derived values, and `kernel`, the width of the filter
+// that was applied (1: none). Depth that nobody transformed is refused.
+void read_basis(Declaration& d, const std::string& input);
 
-// GLSL type and swizzle of a texel of such an image, and its layers to a face.
-Defines moment_defines(const ImageShape& image, uint32_t faces);
+// Of a filter: `space` and `exponent` as derived values. Depth that nobody transformed is refused: its
+// average is no depth. True when averages are taken of logarithms.
+bool read_space(Declaration& d, const std::string& input);
+
+// GLSL type and swizzle of a texel of such an image, and its layers to a view.
+Defines moment_defines(const ImageShape& image, uint32_t views);
 
 }  // namespace gnomon

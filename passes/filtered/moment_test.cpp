@@ -1,7 +1,14 @@
+// The pass moment_test: visibility from a pre-filtered shadow map.
+#include "engine/graph/pass.h"
+#include "engine/light/light_view.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/filtered/moment_basis.h"
+#include "passes/filtered/summed_area.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -18,11 +25,16 @@ class MomentTest : public Pass {
     d.darkens_lit_surfaces();  // on slopes and next to anything that the kernel takes in
     const ImageShape visibility = declare_receiver(d);
     const ImageShape moments =
-        d.input("moments", Access::sampled, true, "the filtered basis; a face's layers follow each other");
+        d.input("moments", Access::sampled, true, "the filtered basis; a view's layers follow each other");
     d.reads_around("shadow_map", 1);
-    if (moments.mips == 1) d.reads_around("moments", 2);
-    declare_basis(d);
-    declare_kernel(d);
+    const bool soft = d.optional_input("width", Access::sampled, true,
+                                       "of the penumbra at the receiver, world units: 'moments' is then a "
+                                       "summed_area_table, read over the light's shape of that width")
+                          .has_value();
+    if (moments.mips == 1 && !soft) d.reads_around("moments", 2);
+    read_basis(d, "moments");
+    read_table(d, "moments", soft);
+    refuse_another_map(d);
     d.choice("bound", "chebyshev", {"chebyshev", "gaussian", "gaussian_cdf"},
              "variance bases: Chebyshev's inequality, twice the upper tail of "
              "a normal distribution, or its plain tail, "
@@ -31,12 +43,14 @@ class MomentTest : public Pass {
              "four_moments: depth unbounded, or known to lie in its range");
     declare_thresholds(d);
     d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", soft ? ShadowKind::soft : ShadowKind::filtered);
   }
 
   void prepare(Environment& e) override {
     const ImageShape moments = e.shape("moments");
     Defines defines = moment_defines(moments, e.shape("shadow_map").layers);
     if (moments.mips > 1) defines.emplace_back("MIP_MAPS", "1");
+    for (auto& define : table_defines(moments, e.params())) defines.push_back(std::move(define));
     test_.prepare(e, "filtered/moment_test.glsl", defines);
     report_bias(e);
     warn_about_kernel(e, e.shape("shadow_map").extent.width);
@@ -46,6 +60,16 @@ class MomentTest : public Pass {
   void record(Context& c) override { test_.dispatch_all(c); }
 
  private:
+  // The map that tells receivers' places and bias is the one that the moments are made of.
+  static void refuse_another_map(Declaration& d) {
+    for (const auto& [key, value] : d.find("shadow_map")->traits) {
+      const Value* of_moments = d.trait("moments", key);
+      if (of_moments && *of_moments != value)
+        return d.refuse_source("moments", "is made of another map than 'shadow_map': its " + key + " is " +
+                                              to_string(*of_moments) + ", not " + to_string(value));
+    }
+  }
+
   static void declare_thresholds(Declaration& d) {
     d.number("minimum_variance", 1e-6, 1e-9, 1e-2, "depth range squared",
              "variance bases: the least that counts");

@@ -1,9 +1,13 @@
+// The pass prefilter: filters a map's texels by rows, then by columns.
 #include <algorithm>
 #include <bit>
 
+#include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 #include "passes/filtered/moment_basis.h"
+#include "passes/map/map_traits.h"
 #include "passes/map/receiver_ports.h"
 
 namespace gnomon {
@@ -29,8 +33,7 @@ class Prefilter : public Pass {
     d.choice("shape", "box", {"box", "gaussian"},
              "weights: equal, or Gaussian with a standard deviation of a "
              "quarter of the kernel's width");
-    const bool log = declare_space(d) == "log";
-    declare_exponent(d, 80.0);
+    const bool log = read_space(d, "source");
     const bool mips = d.flag("mip_maps", false, "halve the result down to one texel");
     if (mips && log) d.refuse("mip_maps", "false in log space, whose averages are no averages of logarithms");
     d.transient("rows", Access::storage_read | Access::storage_write, true, shape, "filtered by rows");
@@ -40,6 +43,8 @@ class Prefilter : public Pass {
       access = access | Access::transfer_read | Access::transfer_write;
     }
     d.output("result", access, true, shape, "filtered by rows and columns");
+    d.carry_traits("source", "result");
+    d.set_trait("result", map_trait::kKernel, kernel);
     if (!mips) d.reads_around("source", uint32_t(kernel / 2), "result");  // mip levels hold all of the map
   }
 

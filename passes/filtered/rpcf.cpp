@@ -1,10 +1,16 @@
+// The pass rpcf: percentage-closer filtering of the revectorized shadow.
 #include <algorithm>
+#include <string>
 
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/frame/pixel_list.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -18,18 +24,26 @@ class RevectorizationBasedFilter : public Pass {
     const int64_t kernel = declare_kernel(d);
     const int64_t walk =
         d.integer("max_size", 16, 1, 255, "texels", "longest walk along a silhouette, in each direction");
+    const bool soft =
+        d.optional_input(
+             "width", Access::sampled, true,
+             "of the penumbra at the receiver, world units: the kernel is then as wide as the light's "
+             "larger side of that width, in whole odd texels, and 'kernel' the widest")
+            .has_value();
     d.reads_around("shadow_map", uint32_t(kernel / 2 + walk + 3));
     d.flag("reuse", true, "samples share their neighbours' silhouette walks; the result is the same");
     d.flag("list", true,
            "only pixels whose kernel touches a silhouette are filtered; the result is the same");
     d.output("visibility", Access::storage_read | Access::storage_write, true, visibility,
              "0 in umbra, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", soft ? ShadowKind::soft : ShadowKind::filtered);
     declare_pixel_list(d, visibility.extent, "pixels whose kernel touches one light's silhouette");
   }
 
   void prepare(Environment& e) override {
     find_.prepare(e, "filtered/rpcf_find.glsl");
-    filter_.prepare(e, "filtered/rpcf_filter.glsl");
+    filter_.prepare(e, "filtered/rpcf_filter.glsl",
+                    {{"BLOCK", std::to_string(kBlock)}, {"ROW_SHIFT", std::to_string(kRowShift)}});
     report_bias(e);
     warn_about_kernel(e, e.shape("shadow_map").extent.width);
   }
@@ -47,8 +61,8 @@ class RevectorizationBasedFilter : public Pass {
   }
 
  private:
-  static constexpr uint32_t kBlock = 14,
-                            kRowShift = 8;  // samples a side at most; bits: as in rpcf_filter.glsl
+  static constexpr uint32_t kBlock = 14;    // samples a side that are done together at most
+  static constexpr uint32_t kRowShift = 8;  // of push.part.y: the block's bits, above which is its row
 
   // Block by block; without reuse row by row of each block.
   void filter(Context& c, uint32_t light) const {

@@ -1,5 +1,11 @@
+// The pass gbuffer: depth, normals and albedo of what the camera sees.
 #include "engine/graph/pass.h"
+#include "engine/graph/shadow_free.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/render/render_settings.h"
+#include "engine/scene/camera.h"
 
 namespace gnomon {
 namespace {
@@ -19,9 +25,7 @@ class GBuffer : public Pass {
              "octahedral normal of the triangle, turned to the camera on double-sided meshes");
     d.output("albedo", Access::color, false, {size, 1, 1, VK_FORMAT_R8G8B8A8_SRGB}, "base colour");
     for (const Channel& channel : kChannels) d.omit_unread(channel.port);
-    if (d.flag("unshadowed", false, "also write the visibility of a scene without casters"))
-      d.output("unshadowed", Access::color, true, {size, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT},
-               "0 facing away from the light, else 1; a layer a light");
+    declare_unshadowed(d, size);
   }
 
   void prepare(Environment& e) override {
@@ -34,6 +38,7 @@ class GBuffer : public Pass {
     state.depth_test = state.depth_write = true;
     state.depth_compare = e.settings().reversed_z ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
     far_ = e.settings().reversed_z ? 0.0f : 1.0f;
+    if (far_plane_cuts(e.scene(), e.gpu_scene().camera())) state.defines.emplace_back("FAR_PLANE", "1");
     pipelines_.opaque = e.raster(state);
     state.defines.emplace_back("MASKED", "1");
     pipelines_.masked = e.raster(state);
@@ -52,6 +57,19 @@ class GBuffer : public Pass {
                                                         {"geometric", "GEOMETRIC", VK_FORMAT_R16G16_SNORM},
                                                         {"albedo", "ALBEDO", VK_FORMAT_R8G8B8A8_SRGB}}};
 
+  static constexpr const char* kUnshadowed = "unshadowed";
+  static constexpr uint32_t kMostLights = 4;  // colour attachments that every device has beside the channels
+
+  // The visibility of a scene without casters; for more lights than there is room for, a pass makes it.
+  static void declare_unshadowed(Declaration& d, Extent size) {
+    const uint32_t lights = d.setting().lights;
+    if (lights > kMostLights) return d.set_trait("depth", kShadowFreePass, std::string("unshadowed"));
+    d.output(kUnshadowed, Access::color, true, {size, lights, 1, VK_FORMAT_R32_SFLOAT},
+             "0 facing away from the light, else 1; a layer a light");
+    d.omit_unread(kUnshadowed);
+    d.set_trait(kUnshadowed, kShadowFree, true);
+  }
+
   // Those that somebody reads, with their places among the colour attachments.
   void add_channels(Environment& e, RasterState& state) {
     constexpr std::array<float, 4> kNothing{};
@@ -64,12 +82,12 @@ class GBuffer : public Pass {
       state.colors.push_back(channel.format);
       channels_.push_back({channel.port, kNothing});
     }
-    if (!e.params().flag("unshadowed")) return;
+    if (!e.connected(kUnshadowed)) return;
     state.defines.emplace_back("UNSHADOWED_LOCATION", std::to_string(channels_.size()));
     constexpr std::array<float, 4> kLit{1, 1, 1, 1};
-    for (uint32_t light = 0; light < e.shape("unshadowed").layers; ++light) {
+    for (uint32_t light = 0; light < e.shape(kUnshadowed).layers; ++light) {
       state.colors.push_back(VK_FORMAT_R32_SFLOAT);
-      channels_.push_back({"unshadowed", kLit, light});
+      channels_.push_back({kUnshadowed, kLit, light});
     }
   }
 

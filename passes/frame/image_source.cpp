@@ -1,8 +1,14 @@
+// The pass image_source: an image that the program gives, as if a pass had made it.
 #include <fmt/format.h>
 
 #include "engine/base/error.h"
+#include "engine/graph/pass.h"
 #include "engine/image/image.h"
+#include "engine/light/light_view.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/render_settings.h"
+#include "passes/map/map_traits.h"
 
 namespace gnomon {
 namespace {
@@ -13,9 +19,17 @@ class ImageSource : public Pass {
     d.darkens_lit_surfaces();  // whatever the scene casts
     d.summary("Shows an image that the program gives (RenderSettings::images), as if a pass had made it.");
     const bool mask = d.flag("mask", false, "1 where the image is not 0, in 8 bits a pixel");
+    d.optional_input_buffer("views", Access::uniform,
+                            "what the image shows, where it stands for a shadow map");
+    d.offer_behind("views", "value");
     d.output("value", Access::transfer_write, true,
              {d.setting().viewport, 1, 1, mask ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT},
              "the image's first channel");
+    const bool depth =
+        d.choice("holds", "values", {"values", "depth"},
+                 "what the image is: values, or depth from the light, a shadow map") == "depth";
+    if (depth && mask) d.refuse("holds", "\"values\" with mask");
+    if (depth) set_depth_map(d, "value", declare_depth_map(d));
   }
 
   void prepare(Environment& e) override {

@@ -1,4 +1,7 @@
+// Lists of pixels that one dispatch makes and another works off.
 #include "passes/frame/pixel_list.h"
+#include "engine/graph/pass.h"
+#include "engine/render/context.h"
 
 namespace gnomon {
 

@@ -3,7 +3,7 @@
 // the workgroups in x, y and z of an indirect dispatch and the number of pixels listed.
 #pragma once
 
-#include "engine/render/context.h"
+#include "engine/graph/pass.h"
 
 namespace gnomon {
 

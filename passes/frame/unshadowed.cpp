@@ -1,5 +1,8 @@
+// The pass unshadowed: visibility where nothing casts a shadow.
 #include "engine/graph/pass.h"
+#include "engine/graph/shadow_free.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 
 namespace gnomon {
 namespace {
@@ -14,6 +17,7 @@ class Unshadowed : public Pass {
     d.output("visibility", Access::storage_write, true,
              {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT},
              "0 facing away, 1 lit; a layer a light");
+    d.set_trait("visibility", kShadowFree, true);
   }
   void prepare(Environment& e) override { pipeline_ = e.compute("frame/unshadowed.glsl"); }
   void record(Context& c) override {

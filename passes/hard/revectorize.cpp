@@ -1,7 +1,12 @@
+// The pass revectorize: revectorization-based shadow mapping.
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/scene/scene.h"
 #include "passes/frame/pixel_list.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -12,8 +17,9 @@ class Revectorize : public Pass {
     d.summary("Tests every camera pixel against the shadow map and revectorizes the shadow's silhouette.");
     d.cite("Macedo 2018, eq. 3.1-3.9 and 4.1-4.2");
     const ImageShape visibility = declare_receiver(d);
-    d.choice("mode", "non_conservative", {"conservative", "non_conservative", "filtered"},
-             "visibility function: (3.6), (3.9) or (4.2)");
+    const std::string mode =
+        d.choice("mode", "non_conservative", {"conservative", "non_conservative", "filtered"},
+                 "visibility function: (3.6), (3.9) or (4.2)");
     d.choice(
         "walk", "tangent_plane", {"tangent_plane", "kept_lowering"},
         "depth along the walk: the receiver's tangent plane at each texel, or the remedy of section 3.1.3");
@@ -23,6 +29,7 @@ class Revectorize : public Pass {
     d.number("epsilon", 1e-3, 0, 1, "depth range",
              "kept_lowering: how near the map is lowered for, and by how much");
     d.output("visibility", Access::storage_write, true, visibility, "0 in shadow, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", mode == "filtered" ? ShadowKind::filtered : ShadowKind::hard);
     declare_pixel_list(d, visibility.extent, "pixels on one light's silhouette");
   }
 

@@ -1,3 +1,4 @@
+// Which casters are drawn into which views of a shadow map.
 #include "passes/map/caster_layers.h"
 
 #include <fmt/format.h>
@@ -5,23 +6,30 @@
 #include <algorithm>
 
 #include "engine/light/caster_culling.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
+#include "engine/light/view_set.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/render/render_settings.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {
 
 bool holds(const std::vector<std::vector<bool>>& all, const std::vector<std::vector<bool>>& part) {
-  for (size_t face = 0; face < part.size(); ++face)
-    for (size_t i = 0; i < part[face].size(); ++i)
-      if (part[face][i] && !all[face][i]) return false;
+  for (size_t view = 0; view < part.size(); ++view)
+    for (size_t i = 0; i < part[view].size(); ++i)
+      if (part[view][i] && !all[view][i]) return false;
   return true;
 }
 
 std::vector<LayerRun> runs_of(const std::vector<std::vector<bool>>& needed, size_t instance) {
   std::vector<LayerRun> runs;
-  for (uint32_t face = 0; face < needed.size(); ++face) {
-    if (!needed[face][instance]) continue;
-    if (runs.empty() || runs.back().first + runs.back().count != face) runs.push_back({face, 0});
+  for (uint32_t view = 0; view < needed.size(); ++view) {
+    if (!needed[view][instance]) continue;
+    if (runs.empty() || runs.back().first + runs.back().count != view) runs.push_back({view, 0});
     ++runs.back().count;
   }
   return runs;
@@ -36,7 +44,7 @@ void CasterLayers::prepare(Environment& e, const std::string& map) {
   camera_ = e.settings().camera;
   size_ = e.shape(map).extent.width;
   aspect_ = double(e.settings().width) / e.settings().height;
-  drawn_ = needed(e.gpu_scene(), camera_);
+  drawn_ = needed(e.scene(), e.views("views"));
   draw_later(drawn_);
   if (all_) return;
   for (size_t light = 0; light < shadowless_.size(); ++light)
@@ -45,14 +53,13 @@ void CasterLayers::prepare(Environment& e, const std::string& map) {
   const size_t all = e.scene().instances.size() * drawn_.size();
   if (draws_ < double(all))
     e.left_out(fmt::format("{} of {} draws", double(all) - draws_, all),
-               reach_ ? "their shadows cannot reach what the camera sees" : "no face of the map holds them");
+               reach_ ? "their shadows cannot reach what the camera sees" : "no view of the map holds them");
 }
 
-CasterLayers::Needed CasterLayers::needed(const GpuScene& scene, uint32_t camera) const {
-  const Scene& now = scene.scene();
-  if (all_) return Needed(scene.faces().size(), std::vector<bool>(now.instances.size(), true));
-  const Camera& view = now.cameras[camera];
-  return casters_in_view(now, view, view.aspect.value_or(aspect_), scene.faces(), size_, reach_, shadowless_);
+CasterLayers::Needed CasterLayers::needed(const Scene& scene, const ViewSet& views) const {
+  if (all_) return Needed(views.views.size(), std::vector<bool>(scene.instances.size(), true));
+  const Camera& camera = scene.cameras[camera_];
+  return casters_in_view(scene, camera, aspect_, views.views, size_, reach_, shadowless_);
 }
 
 void CasterLayers::draw_later(const Needed& needed) {
@@ -67,10 +74,11 @@ void CasterLayers::draw_later(const Needed& needed) {
 
 bool CasterLayers::update(const Context& c, bool keep) {
   const GpuScene& scene = c.scene();
-  bool moved = scene.casters_changed();
-  for (uint32_t light = 0; light < shadowless_.size(); ++light) moved = moved || scene.light_changed(light);
+  const ViewSet& views = c.views("views");
+  const bool moved = scene.casters_changed() ||
+                     std::find(views.changed.begin(), views.changed.end(), true) != views.changed.end();
   if (!moved && !scene.camera_changed()) return keep;
-  const Needed now = needed(scene, camera_);
+  const Needed now = needed(scene.scene(), views);
   if (keep && !moved && holds(drawn_, now)) return true;
   drawn_ = now;
   draw_later(drawn_);

@@ -1,27 +1,32 @@
-// Which casters a shadow map's faces need: those whose shadow may fall on what the camera sees, kept up to
+// Which casters a shadow map's views need: those whose shadow may fall on what the camera sees, kept up to
 // date while the scene moves.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/render/context.h"
+#include "engine/graph/pass.h"
+#include "engine/render/raster.h"
 
 namespace gnomon {
 
+struct Scene;    // engine/scene/scene.h
+struct ViewSet;  // engine/light/view_set.h
+
 class CasterLayers {
  public:
-  // `map`: the output that shows the casters. With keep_all every face has all of them.
+  // `map`: the output that shows the casters. With keep_all every view has all of them.
   void prepare(Environment& e, const std::string& map);
   // For the frame at hand. `keep`: the map still shows what `of_map()` was when it was drawn last; true when
   // that is all the frame needs, so that nothing has to be drawn.
   bool update(const Context& c, bool keep);
   const InstanceLayers& of_map() const { return layers_; }
-  double draws() const { return draws_; }  // of the last frame: instances times faces
+  double draws() const { return draws_; }  // of the last frame: instances times views
 
  private:
-  using Needed = std::vector<std::vector<bool>>;  // [face][instance]
-  Needed needed(const GpuScene& scene, uint32_t camera) const;
+  using Needed = std::vector<std::vector<bool>>;  // [view][instance]
+  Needed needed(const Scene& scene, const ViewSet& views) const;
   void draw_later(const Needed& needed);
 
   std::optional<uint32_t> reach_;

@@ -1,3 +1,4 @@
+// Warns of what of a scene lies outside of what shadow maps can resolve.
 #include "passes/map/map_domain.h"
 
 #include <fmt/format.h>
@@ -7,8 +8,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
+#include "engine/light/view_set.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/render/render_settings.h"
 #include "engine/scene/area_light.h"
+#include "engine/scene/scene.h"
 
 namespace gnomon {
 namespace {
@@ -136,15 +142,15 @@ void warn_about_light(Environment& e, const Light& light, uint32_t side, MapsFro
                     light.name, caster->name));
 }
 
-// engine/light/light_faces.cpp lets no perspective range be wider.
+// engine/light/light_views.cpp lets no perspective range be wider.
 constexpr double widest_range = 1e4 * (1 - 1e-9);  // far / near
 
 void warn_about_range(Environment& e) {
-  for (const LightFace& face : e.gpu_scene().faces()) {
-    if (face.orthographic || face.far < widest_range * face.near) continue;
+  for (const LightView& view : e.views("views").views) {
+    if (view.orthographic || view.far < widest_range * view.near) continue;
     e.warn(fmt::format(
         "what is nearer to light '{}' than {:.3g} casts as if it were there, and receives no shadow",
-        e.scene().lights[face.light].name, face.near));
+        e.scene().lights[view.light].name, view.near));
     return;
   }
 }
@@ -170,11 +176,11 @@ void warn_about_kernel(Environment& e, uint32_t side) {
 
 void warn_about_rise(Environment& e, uint32_t side) {
   const double half_kernel = 0.5 * static_cast<double>(e.params().integer("kernel"));
-  for (const LightFace& face : e.gpu_scene().faces()) {
-    const double middle = face.orthographic ? 1.0 : 0.5 * (face.near + face.far);
-    const double texel = 2 * std::max(face.half_width, face.half_height) * middle / side;
-    const double slope = most_rise * (face.far - face.near) / (half_kernel * texel);
-    const Light& light = e.scene().lights[face.light];
+  for (const LightView& view : e.views("views").views) {
+    const double middle = view.orthographic ? 1.0 : 0.5 * (view.near + view.far);
+    const double texel = 2 * std::max(view.half_width, view.half_height) * middle / side;
+    const double slope = most_rise * (view.far - view.near) / (half_kernel * texel);
+    const Light& light = e.scene().lights[view.light];
     const double share = slope < steep_slope ? grazed_share(e.scene(), light, slope) : 0;
     if (share <= most_grazed) continue;
     e.warn(

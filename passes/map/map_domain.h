@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/render/context.h"
+#include "engine/graph/pass.h"
 #include "engine/scene/scene.h"
 
 namespace gnomon {

@@ -1,6 +1,10 @@
+// Makes a min-max map of a shadow map over a filter window.
 #include "passes/map/min_max_map.h"
 
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
 
 namespace gnomon {
 namespace {

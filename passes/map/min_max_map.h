@@ -2,7 +2,8 @@
 // needs no filter. Readers use shaders/glsl/lib/min_max.glsl and the transient `around`.
 #pragma once
 
-#include "engine/render/context.h"
+#include "engine/graph/pass.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace gnomon {
 

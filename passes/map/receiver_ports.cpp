@@ -1,54 +1,27 @@
+// Ports of everything that tests camera pixels against a shadow map.
 #include "passes/map/receiver_ports.h"
-#include "engine/light/light_face.h"
+#include "engine/graph/pass.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
+#include "engine/light/view_set.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/scene/scene.h"
+#include "passes/map/map_traits.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 namespace gnomon {
-namespace {
-
-struct BiasDefaults {
-  double constant, slope, normal;
-};
-
-// In texels. Chosen by measurement (bench/suites/bias.json) as the least bias that leaves no acne.
-BiasDefaults bias_defaults(const std::string& method) {
-  if (method == "constant") return {8.0, 0.0, 0.0};
-  if (method == "slope_scaled") return {1.0, 1.5, 0.0};
-  if (method == "receiver_plane") return {0.5, 0.2, 0.0};
-  if (method == "normal_offset") return {1.0, 0.0, 2.0};
-  if (method == "back_face") return {1.0, 1.5, 0.0};
-  if (method == "midpoint") return {1.0, 1.5, 0.0};
-  return {0.0, 0.0, 0.0};
-}
-
-}  // namespace
-
-void declare_encoding(Declaration& d) {
-  d.choice("encoding", "perspective", {"perspective", "linear"},
-           "depth in the shadow map (Rzeczkowski 2024, eq. 3.6 or 3.7)");
-}
-
-std::string declare_bias(Declaration& d) {
-  return d.choice(
-      "bias", "receiver_plane",
-      {"none", "constant", "slope_scaled", "receiver_plane", "normal_offset", "back_face", "midpoint"},
-      "how self-shadowing is avoided");
-}
-
-ImageShape declare_receiver(Declaration& d) {
-  const ImageShape depth = d.input("depth", Access::sampled, false, "the camera's device depth");
+ImageShape declare_receiver(Declaration& d, Access access) {
+  const ImageShape depth = d.input("depth", access, false, "the camera's device depth");
   d.input("geometric", Access::sampled, false, "octahedral geometric normal");
-  d.input("shadow_map", Access::sampled, true, "depth from the light, a layer a face");
-  declare_encoding(d);
-  const BiasDefaults standard = bias_defaults(declare_bias(d));
-  d.number("bias_constant", standard.constant, 0, 1000, "texels", "shift of the receiver towards the light");
-  d.number("bias_slope", standard.slope, 0, 1000, "texels", "further shift, times the receiver's slope");
-  d.number("bias_normal", standard.normal, 0, 1000, "texels",
-           "shift along the geometric normal, times the sine of the light's angle to it (normal_offset)");
+  d.input("shadow_map", Access::sampled, true, "depth from the light, a layer a view");
+  d.input_behind("views", "shadow_map", Access::uniform, "what the map's layers show");
+  d.offer_behind("shadow_map", "visibility");
+  read_depth_map(d, "shadow_map");
   return {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT};
 }
 
@@ -59,38 +32,37 @@ int64_t declare_kernel(Declaration& d) {
 }
 
 void LightPipelines::prepare(Environment& e, const std::string& file, const Defines& defines) {
-  for (const Light& light : e.scene().lights) {
-    const bool point = light.type == LightType::point;
-    Pipeline& pipeline = point ? six_faces_ : one_face_;
+  for (const ViewSet::Range& views : e.views("views").of_light) {
+    Pipeline& pipeline = by_views_[views.count];
     if (pipeline.handle) continue;
     Defines all = defines;
-    if (point) all.emplace_back("SIX_FACES", "1");
+    all.emplace_back("LIGHT_VIEWS", std::to_string(views.count));
     pipeline = e.compute(file, all);
   }
 }
 
 const Pipeline& LightPipelines::of(const Context& c, uint32_t light) const {
-  return c.scene().scene().lights[light].type == LightType::point ? six_faces_ : one_face_;
+  return by_views_.at(c.views("views").of_light[light].count);
 }
 
-void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines) {
+void PerLight::prepare(Environment& e, const std::string& file, const Defines& defines,
+                       const PerLightOutput& output) {
   pipelines_.prepare(e, file, defines);
+  output_ = output.port;
   for (const std::string& why : e.scene_facts().shadowless) shadowless_.push_back(!why.empty());
   if (std::find(shadowless_.begin(), shadowless_.end(), true) != shadowless_.end())
-    unshadowed_ = e.compute("frame/unshadowed.glsl");
+    unshadowed_ = e.compute(output.shadowless);
 }
 
 bool PerLight::shade_shadowless(Context& c, uint32_t light) const {
   if (!shadowless_[light]) return false;
   c.push(unshadowed_, light);
-  c.dispatch_over(unshadowed_, c.shape("visibility").extent);
+  c.dispatch_over(unshadowed_, c.shape(output_).extent);
   return true;
 }
 
 const Pipeline& PerLight::ready(Context& c, uint32_t light, std::array<uint32_t, 2> part) const {
-  const auto& faces = c.scene().faces();
-  uint32_t first = 0;
-  while (first < faces.size() && faces[first].light != light) ++first;
+  const uint32_t first = c.views("views").of_light[light].first;
   const Pipeline& pipeline = pipelines_.of(c, light);
   c.push(pipeline, std::array<uint32_t, 4>{light, first, part[0], part[1]});
   return pipeline;
@@ -101,7 +73,7 @@ void PerLight::dispatch_over(Context& c, uint32_t light, Extent pixels) const {
 }
 
 void PerLight::dispatch_all(Context& c) const {
-  const ImageShape shape = c.shape("visibility");
+  const ImageShape shape = c.shape(output_);
   for (uint32_t light = 0; light < shape.layers; ++light)
     if (!shade_shadowless(c, light)) dispatch_over(c, light, shape.extent);
 }
@@ -113,12 +85,12 @@ void PerLight::dispatch_indirect(Context& c, uint32_t light, const std::string& 
 
 void report_bias(Environment& e) {
   const double size = e.shape("shadow_map").extent.width;
-  const auto& faces = e.gpu_scene().faces();
-  for (uint32_t i = 0; i < faces.size(); ++i) {
-    const LightFace& face = faces[i];
-    const double half = std::max(face.half_width, face.half_height);
-    const double texel = 2.0 * half * (face.orthographic ? 1.0 : 0.5 * (face.near + face.far)) / size;
-    const std::string suffix = faces.size() > 1 ? fmt::format(".face{}", i) : std::string();
+  const auto& views = e.views("views").views;
+  for (uint32_t i = 0; i < views.size(); ++i) {
+    const LightView& view = views[i];
+    const double half = std::max(view.half_width, view.half_height);
+    const double texel = 2.0 * half * (view.orthographic ? 1.0 : 0.5 * (view.near + view.far)) / size;
+    const std::string suffix = views.size() > 1 ? fmt::format(".view{}", i) : std::string();
     e.fact("texel_world" + suffix, texel);
     e.fact("bias_constant_world" + suffix, texel * e.params().number("bias_constant"));
     e.fact("bias_slope_world" + suffix, texel * e.params().number("bias_slope"));

@@ -1,10 +1,15 @@
+// The pass shadow_map: the scene's depth from every light.
 #include <string>
 
+#include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/render_settings.h"
 #include "passes/map/caster_layers.h"
 #include "passes/map/map_domain.h"
-#include "passes/map/receiver_ports.h"
+#include "passes/map/map_traits.h"
+#include "passes/technique.h"
 
 namespace gnomon {
 namespace {
@@ -13,24 +18,26 @@ class ShadowMap : public Pass {
  public:
   void declare(Declaration& d) const override {
     d.kind(PassKind::mixed);
-    d.summary(
-        "Renders the scene's depth from every light: one face a spot or directional light, six a point "
-        "light.");
+    d.summary("Renders the scene's depth from every light, a layer a view.");
     d.cite("Williams 1978; depth encodings: Rzeczkowski 2024, eq. 3.5-3.8; midpoint: Woo 1992");
-    const uint32_t size = uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each face"));
-    declare_encoding(d);
-    const bool midpoint = declare_bias(d) == "midpoint";
+    const uint32_t size = uint32_t(d.integer("size", 1024, 1, 16384, "texels", "side of each layer"));
+    const DepthMapTraits traits = declare_depth_map(d);
+    const bool midpoint = traits.bias == "midpoint";
     const bool cache = d.flag("cache", false, "keep the map while no light and no caster moves");
-    const ImageShape faces{{size, size}, d.setting().map_faces, 1, VK_FORMAT_D32_SFLOAT};
-    ImageShape merged = faces;
+    const BufferShape views = d.input_buffer("views", Access::uniform, "what the layers show");
+    d.offer_behind("views", "depth");
+    const ImageShape layers{{size, size}, uint32_t(views.count), 1, VK_FORMAT_D32_SFLOAT};
+    ImageShape merged = layers;
     merged.format = VK_FORMAT_R32_SFLOAT;
     if (midpoint) {
       d.output("depth", Access::storage_write, true, merged, "depth halfway between the first two surfaces");
-      d.transient("first", Access::depth | Access::sampled, true, faces, "depth of the first surface");
-      d.transient("second", Access::depth | Access::sampled, true, faces, "depth of the second surface");
+      d.transient("first", Access::depth | Access::sampled, true, layers, "depth of the first surface");
+      d.transient("second", Access::depth | Access::sampled, true, layers, "depth of the second surface");
     } else {
-      d.output("depth", Access::depth, true, faces, "depth of the first surface; 1 where there is none");
+      d.output("depth", Access::depth, true, layers, "depth of the first surface; 1 where there is none");
     }
+    set_depth_map(d, "depth", traits);
+    draws_maps(d, "depth", "size");
     if (cache) d.keep("depth");
   }
 
@@ -72,7 +79,7 @@ class ShadowMap : public Pass {
     state.vertex = "map/shadow_map.vert.glsl";
     state.depth = VK_FORMAT_D32_SFLOAT;
     state.depth_test = state.depth_write = true;
-    state.depth_clamp = true;  // what is nearer than the face's range casts its shadow all the same
+    state.depth_clamp = true;  // what is nearer than the view's range casts its shadow all the same
     state.depth_compare = VK_COMPARE_OP_LESS;
     if (linear) state.defines.emplace_back("LINEAR_DEPTH", "1");
     if (peel) state.defines.emplace_back("PEEL", "1");

@@ -1,3 +1,5 @@
+// The pass bilateral_filter: visibility averaged by distance from the pixel and its tangent plane.
+#include "engine/graph/pass.h"
 #include "passes/screen/strip_filter.h"
 
 namespace gnomon {
@@ -5,7 +7,7 @@ namespace {
 
 class BilateralFilter : public StripFilter {
  public:
-  BilateralFilter() : StripFilter("screen/bilateral_filter.glsl") {}
+  BilateralFilter() : StripFilter("screen/bilateral_filter.glsl", "screen/bilateral_filter_soft.glsl") {}
   void declare(Declaration& d) const override {
     d.summary(
         "Averages visibility with weights that fall with distance from the pixel and from its tangent plane, "

@@ -1,3 +1,5 @@
+// The pass mean_filter: visibility averaged over each pixel's surroundings on its own surface.
+#include "engine/graph/pass.h"
 #include "passes/screen/strip_filter.h"
 
 namespace gnomon {
@@ -5,7 +7,7 @@ namespace {
 
 class MeanFilter : public StripFilter {
  public:
-  MeanFilter() : StripFilter("screen/mean_filter.glsl") {}
+  MeanFilter() : StripFilter("screen/mean_filter.glsl", "screen/mean_filter_soft.glsl") {}
   void declare(Declaration& d) const override {
     d.summary("Averages visibility over each pixel's surroundings on its own surface, in place.");
     d.cite("Macedo 2018, ch. 4.2.3, eq. 4.4-4.5");

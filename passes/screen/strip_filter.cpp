@@ -1,3 +1,4 @@
+// What separable, edge-aware filters of visibility share: strips of the image, along x, then y.
 #include "passes/screen/strip_filter.h"
 
 #include <algorithm>
@@ -6,7 +7,11 @@
 #include <string>
 
 #include "engine/base/divide_up.h"
+#include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/render_settings.h"
 
 namespace gnomon {
 namespace {
@@ -58,6 +63,7 @@ void warn_about_width(Environment& e) {
 void StripFilter::declare(Declaration& d) const {
   const ImageShape shape = d.inout("visibility", Access::storage_read | Access::storage_write, true,
                                    "what is filtered; a layer a light");
+  d.optional_input_behind("views", "visibility", Access::uniform, "what the shadow map's layers show");
   d.input("depth", Access::sampled, false, "the camera's device depth");
   d.input("geometric", Access::sampled, false, "octahedral geometric normal");
   d.number(
@@ -65,6 +71,13 @@ void StripFilter::declare(Declaration& d) const {
       "of the window at the reference depth; it goes with 1/depth, up to 63 pixels (Macedo 2018, eq. 4.4)");
   d.number("reference_depth", 0, 0, 1e9, "world units",
            "view depth at which the window has its width; 0: the camera's distance to the scene's middle");
+  soft_ =
+      d.optional_input("width", Access::sampled, true,
+                       "of the penumbra at the receiver, world units: the window is then as wide as that is "
+                       "at the pixel's depth, whatever the parameter says")
+          .has_value();
+  d.integer("largest", 127, 1, 1023, "pixels",
+            "with a width for each pixel: how far the window reaches to each side at most");
   d.optional_input_buffer(
       "tiles", Access::storage_read,
       "tiles of 16x16 pixels outside of which visibility is plain: without them, it is looked for");
@@ -90,6 +103,7 @@ void StripFilter::declare(Declaration& d) const {
 }
 
 Need StripFilter::need(const SceneFacts& facts, const Params& params) const {
+  if (soft_) return Need::run();
   const double widest =
       params.number("width") * reference_depth(facts, params) / std::max(facts.nearest_depth, 1e-300);
   if (widest > 1) return Need::run();
@@ -98,12 +112,13 @@ Need StripFilter::need(const SceneFacts& facts, const Params& params) const {
 
 void StripFilter::prepare(Environment& e) {
   tiled_ = e.connected("tiles") && e.connected("arguments");
+  const std::string shader = soft_ ? soft_shader_ : shader_;
   classify_ = e.compute(tiled_ ? "screen/strip_filter_tiles.glsl" : "screen/strip_filter_classify.glsl");
   list_y_ = e.compute("screen/strip_filter_list_y.glsl");
   list_x_ = e.compute("screen/strip_filter_list_x.glsl");
-  along_x_ = e.compute(shader_);
-  along_y_ = e.compute(shader_, {{"ALONG_Y_AXIS", "1"}});
-  warn_about_width(e);
+  along_x_ = e.compute(shader);
+  along_y_ = e.compute(shader, {{"ALONG_Y_AXIS", "1"}});
+  if (!soft_) warn_about_width(e);
   reference_depth_ = float(reference_depth(e.scene_facts(), e.params()));
   e.fact("reference_depth", reference_depth_);
 }

@@ -3,8 +3,9 @@
 // shaders/glsl/screen/strip_filter.glsl.
 #pragma once
 
+#include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
-#include "engine/render/context.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace gnomon {
 
@@ -16,13 +17,16 @@ class StripFilter : public Pass {
   void record(Context& c) override;
 
  protected:
-  // `shader`: one direction of the filter; includes strip_filter_line.glsl.
-  explicit StripFilter(std::string shader) : shader_(std::move(shader)) {}
+  // `shader`: one direction of the filter; includes strip_filter_line.glsl. `soft`: the same with a width for
+  // each pixel; includes strip_filter_soft.glsl.
+  StripFilter(std::string shader, std::string soft)
+      : shader_(std::move(shader)), soft_shader_(std::move(soft)) {}
 
  private:
-  std::string shader_;
+  std::string shader_, soft_shader_;
   Pipeline classify_, list_y_, list_x_, along_x_, along_y_;
-  bool tiled_ = false;         // told which tiles are not plain
+  bool tiled_ = false;         // knows which tiles are not plain
+  mutable bool soft_ = false;  // as declared: a width for each pixel
   float reference_depth_ = 1;  // world units
 };
 

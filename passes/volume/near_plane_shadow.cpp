@@ -1,4 +1,6 @@
+// Decides between z-fail and z-pass: may the camera's near plane lie in shadow?
 #include "passes/volume/near_plane_shadow.h"
+#include "engine/scene/scene.h"
 
 #include <cmath>
 
@@ -6,18 +8,6 @@ namespace gnomon {
 namespace {
 
 using Points = std::vector<glm::dvec3>;
-
-// The eye and the near plane's corners, a little enlarged so that rounding never decides.
-Points near_pyramid(const Camera& camera, double aspect) {
-  constexpr double kMargin = 1.01;
-  const double y = kMargin * camera.near * std::tan(0.5 * camera.fov_y),
-               x = y * camera.aspect.value_or(aspect);
-  const double z = -kMargin * camera.near;
-  Points points;
-  for (const glm::dvec3 p : {glm::dvec3(0.0), {-x, -y, z}, {x, -y, z}, {-x, y, z}, {x, y, z}})
-    points.push_back(glm::dvec3(camera.world_from_camera * glm::dvec4(p, 1.0)));
-  return points;
-}
 
 // Hull of the light and the near pyramid, as points.
 Points shadow_hull(const std::vector<Bounds>& casters, const Camera& camera, double aspect,
@@ -60,6 +50,16 @@ Points separating_axes(const Points& hull) {
 }
 
 }  // namespace
+
+std::vector<glm::dvec3> near_pyramid(const Camera& camera, double aspect) {
+  constexpr double kMargin = 1.01;
+  const double y = kMargin * camera.near * half_extent(camera, aspect).y, x = y * aspect;
+  const double z = -kMargin * camera.near;
+  std::vector<glm::dvec3> points;
+  for (const glm::dvec3 p : {glm::dvec3(0.0), {-x, -y, z}, {x, -y, z}, {-x, y, z}, {x, y, z}})
+    points.push_back(glm::dvec3(camera.world_from_camera * glm::dvec4(p, 1.0)));
+  return points;
+}
 
 std::vector<Bounds> instance_bounds(const Scene& scene) {
   std::vector<Bounds> result;

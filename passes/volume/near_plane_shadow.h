@@ -11,6 +11,9 @@ namespace gnomon {
 // Bounds of every instance, world space, as its transformed vertices have them.
 std::vector<Bounds> instance_bounds(const Scene& scene);
 
+// The eye, then the near plane's corners, a little enlarged so that rounding never decides.
+std::vector<glm::dvec3> near_pyramid(const Camera& camera, double aspect);
+
 // Conservative: false only when no instance's box touches the hull of the eye, the near plane's rectangle and
 // the light (a directional light: swept towards it past the scene). `aspect`: width / height of the image.
 bool near_plane_may_be_shadowed(const std::vector<Bounds>& casters, const Camera& camera, double aspect,

@@ -1,3 +1,4 @@
+// The pass planar_shadows: casters projected onto the scene's largest planes.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -5,6 +6,11 @@
 #include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/render/render_settings.h"
+#include "engine/scene/scene.h"
+#include "passes/technique.h"
 #include "passes/volume/receiver_planes.h"
 
 namespace gnomon {
@@ -30,6 +36,7 @@ class PlanarShadows : public Pass {
     d.integer("planes", 4, 1, 16, "1", "receivers: the largest groups of coplanar triangles");
     d.output("visibility", Access::color, true, {depth.extent, d.setting().lights, 1, VK_FORMAT_R32_SFLOAT},
              "0 in shadow, 1 lit; a layer a light");
+    makes_shadows(d, "visibility", ShadowKind::hard);
   }
 
   void prepare(Environment& e) override {

@@ -1,4 +1,6 @@
+// Finds the flat receivers of a scene: its largest groups of coplanar triangles.
 #include "passes/volume/receiver_planes.h"
+#include "engine/scene/scene.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,7 @@
+// Edges and triangles of a scene's casters, as shadow volumes need them on the device.
 #include "passes/volume/silhouette_mesh.h"
+#include "engine/render/gpu_scene.h"
+#include "engine/scene/scene.h"
 
 #include <algorithm>
 #include <numeric>
@@ -57,9 +60,17 @@ MeshEdges mesh_edges(const Mesh& mesh) {
 
 }  // namespace
 
-bool casts_from_far_side(const Draw& draw) { return draw.watertight && !draw.double_sided; }
+uint32_t silhouette_groups(uint64_t items) {
+  constexpr uint64_t kGroup = 64, kMost = 65535;
+  return uint32_t(std::min((items + kGroup - 1) / kGroup, kMost));
+}
 
-SilhouetteMesh silhouette_mesh(const GpuScene& gpu_scene) {
+bool may_be_seen_through(const Draw& draw, bool solid) {
+  const bool closed = solid && !draw.double_sided;
+  return !closed && (!draw.double_sided || draw.alpha_masked);
+}
+
+SilhouetteMesh silhouette_mesh(const GpuScene& gpu_scene, const std::vector<bool>& solid) {
   const Scene& scene = gpu_scene.scene();
   std::vector<MeshEdges> of_mesh;
   for (const Mesh& mesh : scene.meshes) of_mesh.push_back(mesh_edges(mesh));
@@ -70,17 +81,13 @@ SilhouetteMesh silhouette_mesh(const GpuScene& gpu_scene) {
     const uint32_t vertex = gpu_scene.first_vertex(mesh_index);
     const uint32_t first_incident = uint32_t(result.incidents.size());
     const uint32_t first_triangle = uint32_t(result.triangles.size());
-    const bool closed = casts_from_far_side(draw);
-    const bool see_through = !closed && (!draw.double_sided || draw.alpha_masked);
-    const uint32_t tag = draw.instance | (closed ? CasterTriangle::closed : 0) |
-                         (see_through ? CasterTriangle::see_through : 0);
+    const bool see_through = may_be_seen_through(draw, solid[mesh_index]);
+    const uint32_t tag = draw.instance | (see_through ? CasterTriangle::see_through : 0);
     for (size_t i = 0; i < mesh.indices.size(); i += 3)
       result.triangles.push_back(
           {vertex + mesh.indices[i], vertex + mesh.indices[i + 1], vertex + mesh.indices[i + 2], tag});
-    for (const CasterEdge& e : of_mesh[mesh_index].edges) {
+    for (const CasterEdge& e : of_mesh[mesh_index].edges)
       result.edges.push_back({vertex + e.a, vertex + e.b, first_incident + e.first, e.count});
-      result.most_quads += closed ? 1 : e.count;
-    }
     for (const uint32_t i : of_mesh[mesh_index].incidents) result.incidents.push_back(i + 2 * first_triangle);
   }
   return result;

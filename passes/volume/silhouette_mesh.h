@@ -9,10 +9,9 @@
 
 namespace gnomon {
 
-// Mirrors shaders/glsl/volume/shadow_volumes.glsl. Vertices are indices into the scene's positions.
+// Mirrors shaders/glsl/volume/silhouettes.glsl. Vertices are indices into the scene's positions.
 struct CasterTriangle {
-  static constexpr uint32_t closed = 1u << 31;       // cast from the triangles that face away from the light
-  static constexpr uint32_t see_through = 1u << 30;  // the camera may look through its surface
+  static constexpr uint32_t see_through = 1u << 31;  // the camera may look through its surface
   uint32_t a, b, c;
   uint32_t instance;  // and flags
 };
@@ -25,11 +24,14 @@ struct SilhouetteMesh {
   std::vector<CasterTriangle> triangles;
   std::vector<CasterEdge> edges;
   std::vector<uint32_t> incidents;  // triangle * 2, and 1 where it runs along its edge from b to a
-  uint64_t most_quads = 0;          // sides of a volume, at most: for any light
 };
 
-// May this instance cast from its far side alone? Watertight, and never seen from within.
-bool casts_from_far_side(const Draw& draw);
-SilhouetteMesh silhouette_mesh(const GpuScene& scene);
+// May the camera look through an instance's surface? `solid`: is_solid() of its mesh (closed_casters.h).
+bool may_be_seen_through(const Draw& draw, bool solid);
+SilhouetteMesh silhouette_mesh(const GpuScene& scene, const std::vector<bool>& solid);
+
+// Workgroups, of 64, for so many triangles or edges: no more than every device dispatches, so that shaders
+// step over the rest.
+uint32_t silhouette_groups(uint64_t items);
 
 }  // namespace gnomon

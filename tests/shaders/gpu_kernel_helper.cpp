@@ -1,3 +1,4 @@
+// Runs small compute shaders, so that the shader libraries can be tested function by function.
 #include "tests/shaders/gpu_kernel_helper.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Revectorizes visibility maps on the device, and by a plain model of the equations.
 #include "tests/shaders/gpu_revectorization_helper.h"
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -196,6 +197,7 @@ TEST_F(CliTest, ListsNeedNoDevice) {
   const Outcome passes = run("list passes");
   EXPECT_EQ(passes.status, 0) << passes.error;
   EXPECT_NE(passes.out.find("gbuffer"), std::string::npos);
+  EXPECT_NE(passes.out.find("is asked for encoding, bias"), std::string::npos);
   EXPECT_NE(run("list graphs").out.find("shadow_mapping"), std::string::npos);
   EXPECT_NE(run("list scenes").out.find("fence"), std::string::npos);
   EXPECT_NE(run("list metrics").out.find("misclassified"), std::string::npos);
@@ -247,6 +249,53 @@ TEST_F(CliTest, CompareGivesTheFigures) {
   EXPECT_NE(read_text(folder_ / "figures.json").find("\"misclassified\": 0.125"), std::string::npos);
 }
 
+TEST_F(CliTest, CompareHasOneShapeForOneAndSeveralLights) {
+  Image two(4, 2, {"Y", "light1.Y"});
+  write_exr(folder_ / "one.exr", visibility_image(4, 2, 1));
+  write_exr(folder_ / "two.exr", two);
+  const auto figures = [&](const std::string& file) {
+    return nlohmann::json::parse(run("compare " + file + " " + file + " --json").out);
+  };
+  const auto one = figures("one.exr"), other = figures("two.exr");
+  EXPECT_EQ(one["lights"].size(), 1u);
+  EXPECT_EQ(other["lights"].size(), 2u);
+  EXPECT_EQ(one["rmse"], 0.0);
+  EXPECT_EQ(other["lights"][1]["rmse"], 0.0);
+}
+
+TEST_F(CliTest, CompareWithoutCountedPixelsSaysWhy) {
+  Image reference(4, 2, {"Y", "domain"});
+  for (float& x : reference.plane(1)) x = 2;  // all face away
+  write_exr(folder_ / "result.exr", visibility_image(4, 2, 1));
+  write_exr(folder_ / "reference.exr", reference);
+  const Outcome outcome = run("compare result.exr reference.exr --max-misclassified 0 --max-rmse 0");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_NE(outcome.out.find("no pixel counts: 8 face away from the light"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("misclassified     -\n"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << outcome.out;
+}
+
+TEST_F(CliTest, CheckGoesOnWhateverAFileDoes) {
+  std::ofstream(folder_ / "odd.gltf") << R"({"asset": 3, "scenes": "none", "nodes": {"a": null}})";
+  fs::copy_file(fs::path(GNOMON_TEST_SOURCE_DIR) / "assets" / "graphs" / "pcf.json", folder_ / "good.json");
+  const Outcome outcome = run("check odd.gltf torn.json good.json");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.error.find("odd.gltf"), std::string::npos) << outcome.error;
+  EXPECT_NE(outcome.out.find("good.json: ok"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.error.find("json.exception"), std::string::npos) << outcome.error;
+}
+
+TEST_F(CliTest, NamesCannotSteerTheTerminal) {
+  std::ofstream(folder_ / "odd.json")
+      << R"({"schema":1,"name":"x","passes":[{"id":"a\u001b[31m","type":"gb\nuffer\u001b]0;t\u0007"}],"outputs":{}})";
+  const Outcome outcome = run("check odd.json 'no\033[2J.json'");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.error.find('\x1b'), std::string::npos) << outcome.error;
+  EXPECT_EQ(outcome.error.find('\x07'), std::string::npos) << outcome.error;
+  EXPECT_NE(outcome.error.find("\\x1b"), std::string::npos) << outcome.error;
+}
+
 TEST_F(CliTest, CompareRefusesWhatDoesNotMatch) {
   write_exr(folder_ / "small.exr", visibility_image(4, 2, 1));
   write_exr(folder_ / "large.exr", visibility_image(8, 2, 1));
@@ -257,6 +306,33 @@ TEST_F(CliTest, CompareRefusesWhatDoesNotMatch) {
   EXPECT_NE(size.error.find("4x2"), std::string::npos) << size.error;
   EXPECT_EQ(run("compare other.exr small.exr").status, 2);
   EXPECT_EQ(run("compare small.exr other.exr").status, 2);
+}
+
+// Images of other programs have other channels.
+TEST_F(CliTest, CompareTakesAnotherChannelByName) {
+  Image truth(2, 1, {"Y"}), colors(2, 1, {"R", "G", "B"}), layer(2, 1, {"shadow.Y"});
+  truth.data = {0, 1};
+  colors.data = {0, 1, 0, 1, 0, 1};
+  layer.data = {0, 1};
+  write_exr(folder_ / "truth.exr", truth);
+  write_exr(folder_ / "colors.exr", colors);
+  write_exr(folder_ / "layer.exr", layer);
+  const Outcome without = run("compare colors.exr truth.exr");
+  EXPECT_EQ(without.status, 2);
+  EXPECT_NE(without.error.find("no channel 'Y'; it has: B, G, R"), std::string::npos) << without.error;
+  EXPECT_NE(without.error.find("--channel"), std::string::npos);
+  EXPECT_EQ(run("compare colors.exr truth.exr --channel luminance --max-rmse 0.001").status, 0);
+  EXPECT_EQ(run("compare layer.exr truth.exr --channel shadow --max-rmse 0").status, 0);
+  EXPECT_EQ(run("compare layer.exr layer.exr --channel shadow.Y --max-rmse 0").status, 0);
+  EXPECT_EQ(run("compare layer.exr truth.exr --channel sun").status, 2);
+}
+
+TEST_F(CliTest, SceneExportIsReadBack) {
+  EXPECT_EQ(run("scene export fence --out fence.glb").status, 0);
+  const Outcome checked = run("check fence.glb");
+  EXPECT_EQ(checked.status, 0) << checked.error;
+  EXPECT_EQ(run("scene export fence --out fence.gltf").status, 2);
+  EXPECT_EQ(run("scene export absent --out fence2.glb").status, 2);
 }
 
 TEST_F(CliTest, CompareFailsOnValuesThatAreNotFinite) {

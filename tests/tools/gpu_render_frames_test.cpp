@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "engine/image/image.h"
+#include "tools/report_page.h"
 
 namespace gnomon {
 namespace {
@@ -112,6 +113,53 @@ TEST_F(RenderFrames, BadRequestsAreStatusTwo) {
     EXPECT_FALSE(fs::exists(folder_ / "out")) << bad;
     EXPECT_FALSE(text("error.txt").empty()) << bad;
   }
+}
+
+// A triangle that faces up, seen from above, with its light below.
+std::string lit_from_below() {
+  const float corners[] = {-5, 0, 5, 5, 0, 5, 0, 0, -5};
+  const std::string bytes(reinterpret_cast<const char*>(corners), sizeof corners);
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+"extensionsUsed": ["KHR_lights_punctual"],
+"extensions": {"KHR_lights_punctual": {"lights": [{"type": "point"}]}},
+"cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+"nodes": [{"mesh": 0},
+  {"camera": 0, "translation": [0, 5, 8], "rotation": [-0.2588190451, 0, 0, 0.9659258263]},
+  {"translation": [0, -3, 0], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+  "min": [-5, 0, -5], "max": [5, 0, 5]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)" +
+         base64(bytes) + "\"}]}";
+}
+
+TEST_F(RenderFrames, WithoutCountedPixelsTheErrorIsEmptyAndSaysWhy) {
+  std::ofstream(folder_ / "below.gltf") << lit_from_below();
+  ASSERT_EQ(run("render below.gltf --graph shadow_mapping --size 32x24 --repeat 1 --error --out out"), 0)
+      << text("error.txt");
+  const json row = json::parse(text("out/run.json"));
+  EXPECT_EQ(row["status"], "ok");
+  EXPECT_EQ(row["error"]["pixels"], 0);
+  EXPECT_TRUE(row["error"]["rmse"].is_null());
+  ASSERT_EQ(row["error"]["lights"].size(), 1u);
+  EXPECT_NE(row["error"]["lights"][0]["reason"].get<std::string>().find("face away from the light"),
+            std::string::npos);
+}
+
+TEST_F(RenderFrames, WarningsOfTheCacheAreNotResults) {
+  const std::string render =
+      "render square_plane --graph shadow_mapping --size 16x9 --repeat 1 --error --out out";
+  ASSERT_EQ(run(render), 0) << text("error.txt");
+  size_t broken = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "cache"))
+    if (entry.path().extension() == ".exr") std::ofstream(entry.path()) << "broken", ++broken;
+  ASSERT_EQ(broken, 1u);
+  ASSERT_EQ(run(render), 0) << text("error.txt");
+  EXPECT_EQ(text("out.txt").find("traced again"), std::string::npos) << text("out.txt");
+  const size_t warning = text("error.txt").find("gnomon: warning: ");
+  ASSERT_NE(warning, std::string::npos) << text("error.txt");
+  EXPECT_NE(text("error.txt").find("traced again", warning), std::string::npos) << text("error.txt");
 }
 
 TEST_F(RenderFrames, SuitesHaveSequences) {

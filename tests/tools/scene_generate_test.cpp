@@ -1,6 +1,8 @@
+// The generated scenes: the same bytes every time, watertight, facing outwards.
 #include "tools/scene_generate.h"
 #include "engine/base/resource_root.h"
 #include "engine/light/scene_facts.h"
+#include "tests/parameter_name.h"
 
 #include <gtest/gtest.h>
 
@@ -47,9 +49,10 @@ TEST_P(GeneratedScene, LoadsWithoutWarnings) {
   EXPECT_EQ(scene.warnings.messages, std::vector<std::string>{});
   EXPECT_EQ(scene.warnings.degenerate_triangles, 0u);
   EXPECT_EQ(scene.warnings.nonfinite_triangles, 0u);
-  ASSERT_EQ(scene.lights.size(), GetParam() == "area_shapes" ? 5u : 1u);
+  const bool sun = GetParam() == "hills" || GetParam() == "sun_and_lamp";
+  ASSERT_EQ(scene.lights.size(), GetParam() == "area_shapes" ? 5u : GetParam() == "sun_and_lamp" ? 2u : 1u);
   ASSERT_EQ(scene.cameras.size(), GetParam() == "pendulum" ? 2u : 1u);
-  EXPECT_EQ(scene.lights[0].type, GetParam() == "hills" ? LightType::directional : LightType::spot);
+  EXPECT_EQ(scene.lights[0].type, sun ? LightType::directional : LightType::spot);
   EXPECT_EQ(scene.lights[0].area.has_value(), GetParam() != "hills");
   const SceneFacts facts = scene_facts(scene, scene.cameras[0], 16.0 / 9.0);
   EXPECT_EQ(facts.shadowless[0], "");
@@ -99,8 +102,7 @@ std::vector<std::string> names() {
   return result;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, GeneratedScene, testing::ValuesIn(names()),
-                         [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(All, GeneratedScene, testing::ValuesIn(names()), test::ParameterName());
 
 TEST(SceneGenerate, UnknownNameIsAnErrorWithAHint) {
   try {
@@ -179,6 +181,23 @@ TEST(SceneGenerate, AreaShapesHaveTheirStatedMeasures) {
   EXPECT_EQ(emission_at(scene, areas[4], {-half, -half}), glm::dvec3(0.0));
   EXPECT_EQ(emission_at(scene, areas[4], {-half, half}).r, 1.0);
   EXPECT_EQ(emission_at(scene, areas[4], {half, -half}).b, 1.0);
+}
+
+TEST(SceneGenerate, SunAndLampHaveTheirStatedSizes) {
+  namespace s = sun_and_lamp;
+  const Scene scene = load_scene(resource_root() / "assets/scenes/sun_and_lamp.glb");
+  ASSERT_EQ(scene.lights.size(), 2u);
+  const Light &sun = scene.lights[0], &lamp = scene.lights[1];
+  EXPECT_NEAR(angular_diameter(*sun.area) * 180 / std::acos(-1.0), s::sun_degrees, 1e-12);
+  const glm::dvec3 direction(s::sun_direction[0], s::sun_direction[1], s::sun_direction[2]);
+  EXPECT_NEAR(glm::dot(glm::dvec3(sun.world_from_light[2]), glm::normalize(direction)), -1, 1e-12);
+  EXPECT_EQ(lamp.type, LightType::point);
+  EXPECT_EQ(*lamp.area,
+            (AreaLight{AreaLight::Shape::sphere, 2 * s::lamp_radius, 2 * s::lamp_radius, {}, {}}));
+  EXPECT_EQ(glm::dvec3(lamp.world_from_light[3]), glm::dvec3(s::lamp[0], s::lamp[1], s::lamp[2]));
+  const std::string text = describe_scene(scene);
+  EXPECT_NE(text.find(", angular diameter 0.53 degrees\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(", area: sphere of radius 0.2\n"), std::string::npos) << text;
 }
 
 TEST(SceneInfo, NamesTheShapesOfAreaLights) {

@@ -1,3 +1,4 @@
+// The scenes square_plane, sphere_plane and area_shapes, whose shadows have closed forms.
 #include <utility>
 
 #include "engine/image/png.h"
@@ -42,6 +43,23 @@ std::string square_plane_scene() {
   builder.add("blocker", blocker, builder.material({"blocker", {0.2, 0.4, 0.7}, true, {}, {}}));
   builder.camera({3.6, 3.2, 4.4}, {0.0, 0.5, 0.0}, 42.0, 0.1);
   builder.spot({0, s::light_height, 0}, {0, 0, 0}, 72.0, 0.7, s::light_side);
+  return builder.glb();
+}
+
+std::string sun_and_lamp_scene() {
+  namespace s = sun_and_lamp;
+  Builder builder("sun_and_lamp");
+  Shape ground, blocker, post;
+  add_ground(ground, glm::dvec2(s::ground_half), 0.0);
+  add_ground(blocker, glm::dvec2(s::blocker_half), s::blocker_height);
+  add_box(post, {-0.5, 1.0, 0.5}, {0.25, 1.0, 0.25});
+  builder.add("ground", ground, builder.material({"ground", {0.8, 0.8, 0.8}, true, {}, {}}));
+  builder.add("blocker", blocker, builder.material({"blocker", {0.2, 0.4, 0.7}, true, {}, {}}));
+  builder.add("post", post, builder.material({"post", {0.7, 0.3, 0.2}, false, {}, {}}));
+  builder.camera({2.2, 3.4, 5.0}, {0.5, 0.4, 0.6}, 42.0, 0.1);
+  builder.sun({s::sun_direction[0], s::sun_direction[1], s::sun_direction[2]}, 0.5, s::sun_degrees);
+  const glm::dvec3 lamp(s::lamp[0], s::lamp[1], s::lamp[2]);
+  builder.lamp(lamp, lamp.y, 0.3, s::lamp_radius);
   return builder.glb();
 }
 

@@ -1,3 +1,4 @@
+// Builds a glTF 2.0 binary file in memory.
 #include "tools/scenes/builder.h"
 
 #include <algorithm>
@@ -238,12 +239,25 @@ void Builder::area_spot(const std::string& name, const glm::dvec3& eye, const gl
                    {"extras", {{"area_light", area_json(area)}, {"light", {{"fovy_deg", map_fov}}}}}});
 }
 
-void Builder::sun(const glm::dvec3& direction, double radiance) {
+void Builder::lamp(const glm::dvec3& place, double distance, double radiance, double radius) {
+  const size_t light =
+      impl_->add_light({{"name", "lamp"},
+                        {"type", "point"},
+                        {"intensity", std::round(radiance * std::numbers::pi * distance * distance)}});
+  impl_->add_node({{"name", "lamp"},
+                   {"translation", to_json(place)},
+                   {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}},
+                   {"extras", {{"area_light", {{"shape", "sphere"}, {"radius", radius}}}}}});
+}
+
+void Builder::sun(const glm::dvec3& direction, double radiance, double angular_diameter) {
   const size_t light = impl_->add_light(
       {{"name", "sun"}, {"type", "directional"}, {"intensity", rounded(radiance * std::numbers::pi)}});
-  impl_->add_node({{"name", "sun"},
-                   {"rotation", rotation_json(looking(direction))},
-                   {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+  Json node = {{"name", "sun"},
+               {"rotation", rotation_json(looking(direction))},
+               {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}};
+  if (angular_diameter > 0) node["extras"]["area_light"]["angular_diameter"] = angular_diameter;
+  impl_->add_node(std::move(node));
 }
 
 void Builder::move(const std::string& node, const Motion& motion) {

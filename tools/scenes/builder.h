@@ -71,7 +71,10 @@ class Builder {
   // The same with a name and an area of any shape; `area.emission` is what texture() returned.
   void area_spot(const std::string& name, const glm::dvec3& eye, const glm::dvec3& target, double map_fov,
                  double radiance, const AreaLight& area);
-  void sun(const glm::dvec3& direction, double radiance);
+  // `angular_diameter`: degrees; 0: a point infinitely far away.
+  void sun(const glm::dvec3& direction, double radiance, double angular_diameter = 0);
+  // A point light, a sphere of `radius`; a white surface facing it at `distance` has the radiance `radiance`.
+  void lamp(const glm::dvec3& place, double distance, double radiance, double radius);
   // Animates the last node of that name.
   void move(const std::string& node, const Motion& motion);
   std::string glb() const;

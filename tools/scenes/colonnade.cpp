@@ -1,3 +1,4 @@
+// The scene colonnade: columns, arches and a vault.
 #include <cmath>
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// The scene fence: pickets, rails and posts, thin and regular.
 #include "tools/scenes/scenes.h"
 #include "tools/scenes/shapes.h"
 

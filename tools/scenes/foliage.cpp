@@ -1,3 +1,4 @@
+// The scene foliage: a tree of alpha-masked leaves.
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -1,3 +1,4 @@
+// The scene hills: terrain with conifers.
 #include <cmath>
 
 #include "tools/scenes/scenes.h"

@@ -1,3 +1,4 @@
+// The scene lattice: a vault and a ring of laths with many small holes.
 #include <cmath>
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// The scenes that move: pendulum and moving_light.
 #include <cmath>
 #include <numbers>
 

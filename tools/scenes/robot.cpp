@@ -1,3 +1,4 @@
+// The scene robot: a figure of closed parts.
 #include "tools/scenes/scenes.h"
 #include "tools/scenes/shapes.h"
 

@@ -16,5 +16,6 @@ std::string pendulum();
 std::string robot();
 std::string sphere_plane_scene();
 std::string square_plane_scene();
+std::string sun_and_lamp_scene();
 
 }  // namespace gnomon::generate

@@ -1,5 +1,7 @@
+// Shapes for the generated scenes; closed ones are watertight.
 #include "tools/scenes/shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>

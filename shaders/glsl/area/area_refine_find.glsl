@@ -6,18 +6,18 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-const uint PART_NO_CASTERS = 1u;  // push.part.y: there are no maps, for nothing casts a shadow of this light
+// PART_NO_CASTERS, of push.part.y: there are no maps, for nothing casts a shadow of this light.
 
-bool sample_lit(AreaReceiver receiver, Receiver plane, int layer, out bool edge) {
-  ivec2 texel = ivec2(floor(plane.texel));
+bool sample_lit(Query query, out bool edge) {
+  ivec2 texel = ivec2(floor(query.position));
 #if TEST == TEST_PCF
-  vec4 quad = lit_quad(receiver, plane, ivec2(floor(plane.texel - 0.5)), layer);
+  vec4 quad = lit_quad(query, ivec2(floor(query.position - 0.5)));
   float lit = dot(quad, vec4(1.0));
   edge = lit > 0.5 && lit < 3.5;
-  return is_lit(receiver, plane, texel, layer);
+  return is_lit(query, texel);
 #else
   bvec4 neighbours;
-  bool lit = is_lit_cross(receiver, plane, texel, layer, neighbours);
+  bool lit = is_lit_cross(query, texel, neighbours);
   edge = lit ? !all(neighbours) : any(neighbours);
   return lit;
 #endif
@@ -34,10 +34,9 @@ void main() {
   uint count = state == PIXEL_INSIDE ? push.count : 0u;
   for (uint i = 0u; i < count; ++i) {
     LightSample s = light_sample(push.first + i);
-    Receiver plane = plane_in(receiver, s);
     bool edge;
-    bool seen = sample_lit(receiver, plane, s.layer, edge);
-    bool towards = faces_sample(receiver.face, s, receiver.q, receiver.n);
+    bool seen = sample_lit(sample_query(receiver, s, s.layer), edge);
+    bool towards = faces_sample(receiver.view, s, receiver.q, receiver.n);
     lit |= uint(seen && towards) << i;
     edges |= uint(edge && towards) << i;
   }

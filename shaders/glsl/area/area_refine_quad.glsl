@@ -61,9 +61,9 @@ void main() {
   // Pixels that have a neighbour to their left and to their right.
   uint has_left = ~first_pixels(stride - first), has_right = first_pixels(width - stride - first);
   uint last_word = words_a_row() - 1u;
-  int turns = banding != 0u ? 3 : 0;  // a loop of no turns is what costs least where there is nothing to do
-  for (int turn = 0; turn < turns; ++turn) {
-    int y = int(row) + (turn - 1) * stride;
+  int iterations = banding != 0u ? 3 : 0;  // a loop of no iterations is what costs least where there is nothing to do
+  for (int i = 0; i < iterations; ++i) {
+    int y = int(row) + (i - 1) * stride;
     if (y < 0 || y >= int(frame.viewport.y)) continue;
     Pixels here = pixels_at(uint(y), word);
     Pixels before = pixels_at(uint(y), max(word, 1u) - 1u), after = pixels_at(uint(y), min(word + 1u, last_word));

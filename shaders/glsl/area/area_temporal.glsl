@@ -75,18 +75,18 @@ void main() {
   if (state == PIXEL_OTHERS) return;
   ivec3 place = ivec3(at, push.light);
   LightSample s = light_sample(push.first);
-  Receiver plane = plane_in(receiver, s);
-  ivec2 texel = map_texel(plane.texel);
+  Query query = sample_query(receiver, s, STILL_LAYER);
+  ivec2 texel = map_texel(query.position);
   float map = caster_depth(texel);
-  bool lit = plane_depth(receiver, plane, vec2(floor(plane.texel)) + 0.5) <= map;
-  bool faced = faces_sample(receiver.face, s, receiver.q, receiver.n);
+  bool lit = query_depth(query, vec2(floor(query.position)) + 0.5) <= map;
+  bool faced = faces_sample(receiver.view, s, receiver.q, receiver.n);
   bool inside = state == PIXEL_INSIDE;
 #ifndef HISTORY
   imageStore(visibility, place, vec4(inside ? float(lit && faced) : unmapped_visibility(state)));
 #else
-  ShadowHistory h = aged(previous_history(at, octahedral_decode(geometric_at(at).xy)), meets_moving(receiver, plane, texel));
+  ShadowHistory h = aged(previous_history(at, octahedral_decode(geometric_at(at).xy)), meets_moving(query, texel));
   if (!lit && h.blocker != BLOCKER_UNKNOWN)
-    h.blocker = add_blocker(h, decode_perspective(receiver.face, map), float(params.blockers));
+    h.blocker = add_blocker(h, decode_depth(query.view, map, LINEAR_MAP), float(params.blockers));
   h = add_test(h, !(lit && faced), s.weight);
   float weight = tests_weight(h, params.s_min, params.s_max, params.least_tests);
   imageStore(shadow_buffer, place, inside ? pack_history(h) : vec4(0.0));

@@ -36,8 +36,8 @@ void gather_neighbours(inout Neighbourhood around, int first, int end) {
 float filtered_share(ivec2 at, ShadowHistory h, int count) {
   float device_depth = depth_at(at).x;
   vec3 p = relative_position(at, device_depth), n = octahedral_decode(geometric_at(at).xy);
-  LightFace face = area_face(push.face);
-  float z = -face_space(face, vec4(p, 1.0)).z, depth = view_depth(device_depth);
+  LightView view = area_view(push.view);
+  float z = -light_space(view, vec4(p, 1.0)).z, depth = view_depth(device_depth);
   // The n tests that a pixel has had are edges of its shadow already, spread over the penumbra's width: the filter only has to reach
   // from one to the next.
   float width = params.spread * penumbra_width(z, h.blocker, uintBitsToFloat(push.part.x)) * inversesqrt(max(h.tests, 1.0));

@@ -4,8 +4,7 @@
 #include "lib/temporal_shadow.glsl"
 #include "frame/pixel_list.glsl"
 
-// Bits of push.bit. SHADOWS_FADE: so few frames ago that shadows of then may still be there.
-const uint LIGHT_MOVED = 1u, CASTERS_MOVED = 2u, SHADOWS_FADE = 4u;
+// LIGHT_MOVED, CASTERS_MOVED, SHADOWS_FADE: bits of push.bit, as the pass defines them.
 
 const int STILL_LAYER = 0, MOVING_LAYER = 1;  // of `maps`: casters that stand still (or all), casters that may move
 
@@ -31,29 +30,15 @@ float caster_depth(ivec2 texel) {
 
 // Is what is nearest to the light in a moving texel at or in front of the receiver, by the bias to either side? True in a moving
 // caster's shadow and on the moving caster itself.
-bool meets_moving(AreaReceiver receiver, Receiver plane, ivec2 texel) {
+bool meets_moving(Query query, ivec2 texel) {
 #ifdef MOVING_CASTERS
-  float biased = 1.0 / plane.base;  // perspective faces: area lights are spots
-  Receiver behind = bias_receiver(receiver.face, plane, biased - plane.z);
-  return plane_depth(receiver, behind, vec2(texel) + 0.5) > maps_at(texel, MOVING_LAYER).x;
+  float biased = far_distance(query.view, query.plane.base);
+  query.plane = bias_receiver(query.view, query.plane, biased - query.plane.z);
+  return query_depth(query, vec2(texel) + 0.5) > maps_at(texel, MOVING_LAYER).x;
 #else
   return false;
 #endif
 }
 
-// A second list as pixel_list.glsl has it: of new pixels, in `fresh` and `fresh_arguments`.
-void list_fresh_pixel(ivec2 pixel, int width) {
-  uint slot = atomicAdd(fresh_arguments[3], 1u);
-  if (slot % LIST_GROUP == 0u) {
-    atomicMax(fresh_arguments[0], list_groups(slot).x);
-    if (list_groups(slot).y > 1u) atomicMax(fresh_arguments[1], list_groups(slot).y);
-  }
-  fresh[slot] = pixel.y * width + pixel.x;
-}
-
-bool fresh_pixel(uint slot, int width, out ivec2 pixel) {
-  bool there = slot < fresh_arguments[3];
-  uint index = there ? fresh[slot] : 0u;
-  pixel = ivec2(index % width, index / width);
-  return there;
-}
+// A second list: of new pixels.
+PIXEL_LIST(list_fresh_pixel, fresh_pixel, fresh, fresh_arguments)

@@ -3,7 +3,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-const uint PART_FIRST = 1u, PART_LAST = 2u;  // bits of push.part.x: begins, ends a light's samples
+// PART_FIRST, PART_LAST: bits of push.part.x: begins, ends a light's samples.
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -17,9 +17,9 @@ void main() {
   uint count = state == PIXEL_INSIDE ? push.count : 0u;
   for (uint i = 0u; i < count; ++i) {
     LightSample s = light_sample(push.first + i);
-    Receiver plane = plane_in(receiver, s);
-    bool lit = is_lit(receiver, plane, ivec2(floor(plane.texel)), int(push.layer + i));
-    sum += lit && faces_sample(receiver.face, s, receiver.q, receiver.n) ? s.weight : 0.0;
+    Query query = sample_query(receiver, s, int(push.layer + i));
+    bool lit = is_lit(query, ivec2(floor(query.position)));
+    sum += lit && faces_sample(receiver.view, s, receiver.q, receiver.n) ? s.weight : 0.0;
   }
   float v = sum;
   if ((push.part.x & PART_LAST) != 0u) v = min(sum / uintBitsToFloat(push.part.y), 1.0);

@@ -1,17 +1,17 @@
 // The samples of the scene's area lights, as passes/area/sample_maps.h uploads them.
-#include "frame/frame.glsl"
+#include "map/views.glsl"
 #include "lib/light_sample.glsl"
 
-// Face `i` of the scene's light faces, widened for its light's samples.
-LightFace area_face(uint i) {
-  LightFace face;
+// Face `i` of the scene's light views, widened for its light's samples.
+LightView area_view(uint i) {
+  LightView view;
   uint at = 5u * i;
-  face.rows[0] = areas[at];
-  face.rows[1] = areas[at + 1u];
-  face.rows[2] = areas[at + 2u];
-  face.range = areas[at + 3u];
-  face.info = floatBitsToUint(areas[at + 4u]);
-  return face;
+  view.rows[0] = areas[at];
+  view.rows[1] = areas[at + 1u];
+  view.rows[2] = areas[at + 2u];
+  view.range = areas[at + 3u];
+  view.info = floatBitsToUint(areas[at + 4u]);
+  return view;
 }
 
 LightSample light_sample(uint i) {

@@ -82,7 +82,15 @@ void main() {
   if (!p.receives) return;
   bool lit = imageLoad(visibility, ivec3(pixel, tile.layer)).x >= 0.5;
 #if METRIC == METRIC_WORLD
-  float d = world_distance(pixel, p, site, tile.layer) / push.world_width;
+#ifdef HAS_WIDTH
+  // The site carries the width, as silhouette pixels do in EDTSSM (Macedo 2018, algorithm 4); where it has none, as beside the
+  // edge of what blocks, the pixel's own stands.
+  float of_site = width_at(site, tile.layer).x, own = width_at(pixel, tile.layer).x;
+  float width_here = max(of_site > 0.0 ? of_site : own, 1e-30);  // a width that no pixel sees is a step
+#else
+  float width_here = push.world_width;
+#endif
+  float d = world_distance(pixel, p, site, tile.layer) / width_here;
 #else
   // As in fig. 6 of the 2017 paper.
   vec2 way = vec2(site - pixel);

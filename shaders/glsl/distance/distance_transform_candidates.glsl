@@ -4,7 +4,7 @@
 #include "distance/distance_transform_bounded.glsl"
 #include "lib/tiles.glsl"
 
-layout(local_size_x = 128) in;  // so many that the largest radius in the widest image takes fewer turns than software devices allow
+layout(local_size_x = 128) in;  // so many that the largest radius in the widest image takes fewer iterations than software devices allow
 
 const int PER_WORD = WORD / TILE;  // 2
 const int MOST_ACROSS = 1024;      // tiles across the largest image

@@ -5,7 +5,7 @@
 // share the words of bits; rows below the image are swept like others, and not copied.
 //
 // A row is swept in bands of columns, one dispatch each, and coloured in bands from its end: software devices stop loops after some
-// 65000 turns of an invocation. Only the number of entries goes from one band to the next; the rest follows from the stack.
+// 65000 iterations of an invocation. Only the number of entries goes from one band to the next; the rest follows from the stack.
 #include "distance/distance_transform_column.glsl"
 
 layout(local_size_x = 32) in;  // rows of a word

@@ -1,5 +1,5 @@
 // For the listed pixels, which the image alone makes sites: what the camera's depth says of them.
-#include "frame/frame.glsl"
+#include "map/views.glsl"
 #include "lib/distance_transform.glsl"
 #include "lib/octahedral.glsl"
 #include "lib/same_surface.glsl"
@@ -13,11 +13,11 @@ layout(push_constant) uniform Push { int layer; float reach; } push;  // reach: 
 
 // Does the light's shadow map decide about `p` with normal `n`? What faces away is in shadow by itself, and what the map does not hold
 // is in none: no silhouette runs along there.
-bool is_mapped(Light light, LightFace face, vec3 p, vec3 n) { return faces_light(light, p, n) && in_map(light, face, p); }
+bool is_mapped(Light light, LightView view, vec3 p, vec3 n) { return faces_light(light, p, n) && in_map(light, view, p); }
 
 // The four pixels around a corner, in the order of textureGather: does one differ from `value`, lie on the surface through `p` and
-// belong to the map? `light`, `face`: of the layer.
-bool differs(ivec2 corner, float value, vec3 p, vec3 n, float z, Light light, LightFace face) {
+// belong to the map? `light`, `view`: of the layer.
+bool differs(ivec2 corner, float value, vec3 p, vec3 n, float z, Light light, LightView view) {
   const ivec2 OFFSET[4] = ivec2[4](ivec2(-1, 0), ivec2(0, 0), ivec2(0, -1), ivec2(-1, -1));
   vec2 at = vec2(corner) / vec2(textureSize(depth, 0));
   vec4 values = textureGather(source, vec3(at, push.layer)), depths = textureGather(depth, at);
@@ -27,7 +27,7 @@ bool differs(ivec2 corner, float value, vec3 p, vec3 n, float z, Light light, Li
   for (int i = 0; i < 4; ++i) {
     // Beyond the image its edge is repeated.
     vec3 q = relative_position(clamp(corner + OFFSET[i], ivec2(0), last), depths[i]);
-    bool receives = !is_background(depths[i]) && is_mapped(light, face, q, octahedral_decode(vec2(normals_x[i], normals_y[i])));
+    bool receives = !is_background(depths[i]) && is_mapped(light, view, q, octahedral_decode(vec2(normals_x[i], normals_y[i])));
     one = one || (values[i] != value && receives && same_surface(p, n, q, z, params.depth_tolerance));
   }
   return one;
@@ -38,10 +38,10 @@ bool is_site(ivec2 pixel, float device_depth) {
   vec3 p = relative_position(pixel, device_depth), n = octahedral_decode(geometric_at(pixel).xy);
   float z = view_depth(device_depth), value = source_at(pixel, push.layer).x;
   Light light = lights[light_of(push.layer)];
-  LightFace face = first_face(light_of(push.layer));
-  bool found_any = differs(pixel, value, p, n, z, light, face) || differs(pixel + ivec2(1, 0), value, p, n, z, light, face) ||
-             differs(pixel + ivec2(0, 1), value, p, n, z, light, face) || differs(pixel + 1, value, p, n, z, light, face);
-  return found_any && !is_background(device_depth) && is_mapped(light, face, p, n);
+  LightView view = widest_view(light_of(push.layer));
+  bool found_any = differs(pixel, value, p, n, z, light, view) || differs(pixel + ivec2(1, 0), value, p, n, z, light, view) ||
+             differs(pixel + ivec2(0, 1), value, p, n, z, light, view) || differs(pixel + 1, value, p, n, z, light, view);
+  return found_any && !is_background(device_depth) && is_mapped(light, view, p, n);
 }
 
 #endif

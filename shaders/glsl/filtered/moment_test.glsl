@@ -4,10 +4,43 @@
 #include "lib/variance_shadow.glsl"
 #include "lib/moment_shadow.glsl"
 #include "lib/convolution_shadow.glsl"
+#ifdef HAS_WIDTH
+#include "map/light_kernel.glsl"
+#if TABLE_INTEGER == 1
+#define SUMMED uvec4
+#else
+#define SUMMED vec4
+#endif
+SUMMED summed_at(ivec2 texel, int layer) { return moments_at(texel, layer); }
+#include "lib/summed_area.glsl"
+
+const float SQUARE_OF_DISC = 0.886226925;  // half a square's side, in radii of the disc of the same area
+vec2 kernel_half;                          // of the pixel at hand, texels
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Bilinear, in full precision (hardware filters weigh in 1/256) and within the face.
+#ifdef HAS_WIDTH
+// The rectangle in which the map sees the light through the penumbra's width; of a round light a square of the same area. A texel
+// at least, the finest that the map can tell.
+void find_kernel(ivec2 pixel, Query query) {
+  Light light = lights[push.light];
+  vec2 half_width = half_kernel(query.view, half_size_of(light), size_of(light), width_at(pixel, int(push.light)).x, query.plane.z);
+  if (is_round(light)) half_width *= SQUARE_OF_DISC;
+  kernel_half = clamp(half_width, vec2(0.5), vec2(0.5 * float(params.largest_kernel)));
+}
+float footprint_level(ivec2 pixel, Query query) { return 0.0; }
+// The mean over the kernel, from a table with the steps of passes/filtered/summed_area.h.
+vec4 filtered(Query query, int layer, float level) {
+  vec4 sum = summed_rectangle(query.position - kernel_half, query.position + kernel_half, textureSize(moments, 0).xy, layer);
+  vec4 mean = sum / (4.0 * kernel_half.x * kernel_half.y);
+#if TABLE_INTEGER == 1
+  mean = params.least + mean * ((params.greatest - params.least) / TABLE_STEPS);
+#endif
+  return mean;
+}
+#else
+// Bilinear, in full precision (hardware filters weigh in 1/256) and within the view.
 vec4 bilinear(vec2 position, int layer, int level) {
 #ifdef MIP_MAPS
 #define READ(p) texelFetch(moments, ivec3(clamp(p, ivec2(0), last), layer), level)
@@ -28,13 +61,13 @@ vec4 bilinear(vec2 position, int layer, int level) {
 float footprint_level(ivec2 pixel, Query query) {
   float device_depth = depth_at(pixel).x;
   vec3 n = octahedral_decode(geometric_at(pixel).xy), p = relative_position(pixel, device_depth);
-  LightFace face = query.face;
+  LightView view = query.view;
   float size = map_size(), most = 1.0, least_facing = 1e-2 * length(p);
   for (int axis = 0; axis < 2; ++axis) {
     vec3 ray = p + view_depth(device_depth) * (axis == 0 ? frame.ray_dx.xyz : frame.ray_dy.xyz);
     float along = dot(n, p), facing = dot(n, ray);
     vec3 neighbour = ray * (abs(facing) > least_facing * 1e-2 ? along / facing : 1.0);
-    vec3 projected = face_project(face, face_space(face, vec4(neighbour, 1.0)));
+    vec3 projected = light_project(view, light_space(view, vec4(neighbour, 1.0)));
     float moved = distance(projected.xy * size, query.position);
     if (projected.z > 0.0) most = max(most, min(moved, size));
   }
@@ -53,17 +86,22 @@ vec4 filtered(Query query, int layer, float level) {
 float footprint_level(ivec2 pixel, Query query) { return 0.0; }
 vec4 filtered(Query query, int layer, float level) { return bilinear(query.position, layer, 0); }
 #endif
+#endif
 
 // The receiver's depth at its own place, linear in [0, 1]. A kernel on a slope also holds nearer parts of the receiver itself,
 // which moments cannot tell from occluders: `bias_kernel` moves the receiver towards the light by that part of what the plane
 // rises over half the kernel.
 float receiver_linear_depth(Query query, float level) {
-  LightFace face = query.face;
+  LightView view = query.view;
   Receiver plane = query.plane;
+#ifdef HAS_WIDTH
+  float half_width = max(kernel_half.x, kernel_half.y) - 0.5;
+#else
   float half_width = 0.5 * (float(params.kernel) * exp2(level) - 1.0);
-  float z = receiver_depth(face, plane, plane.texel, true);
-  vec2 outwards = half_width * sign(plane.gradient) * (is_orthographic(face) ? 1.0 : -1.0);
-  float farthest = receiver_depth(face, plane, plane.texel + outwards, true);
+#endif
+  float z = receiver_depth(view, plane, plane.texel, true);
+  vec2 outwards = half_width * sign(plane.gradient);
+  float farthest = receiver_depth(view, plane, plane.texel + outwards, true);
   return clamp(z - params.bias_kernel * max(farthest - z, 0.0), 0.0, 1.0);
 }
 
@@ -125,6 +163,9 @@ void main() {
   if (any(greaterThanEqual(at, imageSize(visibility).xy))) return;
   Query query;
   int state = make_query(at, query);
+#ifdef HAS_WIDTH
+  find_kernel(at, query);
+#endif
   float level = footprint_level(at, query);
   float v = reduce_light_leak(reconstruct(query, receiver_linear_depth(query, level), level), params.light_leak_reduction);
   imageStore(visibility, ivec3(at, push.light), vec4(state == PIXEL_INSIDE ? v : unmapped_visibility(state)));

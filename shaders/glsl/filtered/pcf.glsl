@@ -50,7 +50,7 @@ int plainly(Query query) {
   ivec2 size = textureSize(shadow_map, 0).xy, texel = clamp(ivec2(floor(query.position)), ivec2(0), size - 1);
   vec2 low = max(vec2(texel) - float(params.kernel / 2 + 1), vec2(0.0)) + 0.5;
   vec2 high = min(vec2(texel) + float(params.kernel / 2 + 1), vec2(size - 1)) + 0.5;
-  vec4 corners = receiver_depths(query.face, query.plane, vec4(low.x, high.x, high.x, low.x),
+  vec4 corners = receiver_depths(query.view, query.plane, vec4(low.x, high.x, high.x, low.x),
                                  vec4(high.y, high.y, low.y, low.y), ENCODING == ENCODING_LINEAR);
   return min_max_compare(min_max_of(corners), imageLoad(around, ivec3(texel / MIN_MAX_BLOCK, query.layer)).xy);
 }

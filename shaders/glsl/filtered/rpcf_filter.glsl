@@ -2,14 +2,21 @@
 // algorithm 2). The text divides by w; the number of samples is w^2.
 //
 // A dispatch does a part of the kernel, a block of samples or, without reuse, a row of a block, and hands the sum on: wide
-// kernels with long walks would keep a device longer in one dispatch than drivers allow (lavapipe ends loops after 65535 turns
+// kernels with long walks would keep a device longer in one dispatch than drivers allow (lavapipe ends loops after 65535 iterations
 // in all). Samples are added in the same order either way.
 #include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"
+#include "filtered/rpcf_kernel.glsl"
 
 layout(local_size_x = 64) in;
 
 Query query;
+#ifdef HAS_WIDTH
+int kernel;  // of the pixel at hand
+#define KERNEL kernel
+#else
+#define KERNEL params.kernel
+#endif
 
 bool rbsm_lit(ivec2 texel, inout float lowering) {
   return is_lit(query, clamp(texel, ivec2(0), textureSize(shadow_map, 0).xy - 1));
@@ -21,12 +28,12 @@ float revectorized(bool lit, bvec4 d, vec4 distances) {
   return any(d) ? rbsm_filtered(lit, rbsm_relative_position_filtered(distances, params.max_size)) : float(lit);
 }
 
-const int BLOCK = 14;       // samples a side that are done together at most
-const uint ROW_SHIFT = 8u;  // push.part: the block in x and y, and above the latter's 8 bits its row
+// BLOCK: samples a side that are done together at most. push.part: the block in x and y, and above the latter's ROW_SHIFT bits
+// its row.
 
 // Blocks a side, and samples a side of a block; of the last ones some lie beyond the kernel and do not count.
-int blocks() { return (params.kernel + BLOCK - 1) / BLOCK; }
-int block_size() { return (params.kernel + blocks() - 1) / blocks(); }
+int blocks() { return (KERNEL + BLOCK - 1) / BLOCK; }
+int block_size() { return (KERNEL + blocks() - 1) / blocks(); }
 
 #if REUSE == 1
 
@@ -126,11 +133,17 @@ void main() {
   ivec2 at;
   if (!listed_pixel(list_slot(), imageSize(visibility).x, at)) return;
   make_query(at, query);
-  ivec2 part = ivec2(push.part & 0xFFu) * block_size(), inside = min(ivec2(params.kernel) - part, ivec2(block_size()));
-  ivec2 first = ivec2(floor(query.position)) - params.kernel / 2 + part;
+#ifdef HAS_WIDTH
+  kernel = kernel_at(at, query);
+#endif
+  ivec2 part = ivec2(push.part & 0xFFu) * block_size(), inside = min(ivec2(KERNEL) - part, ivec2(block_size()));
+#ifdef HAS_WIDTH
+  if (any(lessThanEqual(inside, ivec2(0))) || int(push.part.y >> ROW_SHIFT) >= inside.y) return;  // of wider kernels
+#endif
+  ivec2 first = ivec2(floor(query.position)) - KERNEL / 2 + part;
   float before = push.part == uvec2(0) ? 0.0 : imageLoad(visibility, ivec3(at, push.light)).x;
   float sum = add_part(before, first, inside, fract(query.position));
-  bool last = all(equal(part + inside, ivec2(params.kernel))) && (REUSE == 1 || int(push.part.y >> ROW_SHIFT) == inside.y - 1);
-  float samples = float(params.kernel * params.kernel);
+  bool last = all(equal(part + inside, ivec2(KERNEL))) && (REUSE == 1 || int(push.part.y >> ROW_SHIFT) == inside.y - 1);
+  float samples = float(KERNEL * KERNEL);
   imageStore(visibility, ivec3(at, push.light), vec4(last ? clamp(sum / samples, 0.0, 1.0) : sum));
 }

@@ -2,6 +2,7 @@
 // are done; the others are listed. Without LIST, as the naive algorithm has it, all are.
 #include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"
+#include "filtered/rpcf_kernel.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -11,15 +12,16 @@ void main() {
   if (any(greaterThanEqual(at, size))) return;
   Query query;
   int state = make_query(at, query);
-  ivec2 first = ivec2(floor(query.position)) - params.kernel / 2 - 1;
+  int kernel = kernel_at(at, query);
+  ivec2 first = ivec2(floor(query.position)) - kernel / 2 - 1;
   // kernel + 2 texels a side, which is odd: the last quad takes in one more, which must not count.
   vec4 least = vec4(1.0), most = vec4(0.0);
-  int width = LIST == 1 && KEEP_ALL == 0 ? params.kernel + 2 : 0;
+  int width = LIST == 1 && KEEP_ALL == 0 ? kernel + 2 : 0;
   for (int y = 0; y < width; y += 2)
     for (int x = 0; x < width; x += 2) {
       vec4 lit = lit_quad(query, first + ivec2(x, y));
-      if (x > params.kernel) lit.yz = lit.xw;
-      if (y > params.kernel) lit.xy = lit.wz;
+      if (x > kernel) lit.yz = lit.xw;
+      if (y > kernel) lit.xy = lit.wz;
       least = min(least, lit);
       most = max(most, lit);
     }

@@ -6,12 +6,12 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 // Texels that hold nothing are at the far end.
-float linear_depth(LightFace face, float d) {
+float linear_depth(LightView view, float d) {
 #if ENCODING == ENCODING_LINEAR
   return d;
 #else
-  if (is_orthographic(face) || d >= 1.0) return d;
-  return clamp(encode_linear(face, decode_perspective(face, d)), 0.0, 1.0);
+  if (is_orthographic(view) || d >= 1.0) return d;
+  return clamp(encode_linear(view, decode_perspective(view, d)), 0.0, 1.0);
 #endif
 }
 
@@ -35,7 +35,7 @@ vec4 basis_of(float z) {
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(at.xy, imageSize(moments).xy))) return;
-  float z = linear_depth(faces[at.z], shadow_map_at(at.xy, at.z).x);
+  float z = linear_depth(views[at.z], shadow_map_at(at.xy, at.z).x);
 #if BASIS == BASIS_FOURIER
   vec2 even = csm_first(z), rotation = csm_rotation(z);
   for (int i = 0; i < MOMENT_LAYERS; ++i) {

@@ -1,11 +1,23 @@
-// Lambertian shading of the G-buffer by all lights, each with its own visibility layer. Linear radiance.
-#include "frame/frame.glsl"
+// Lambertian shading of the G-buffer by all lights, each with its own visibility layer. Linear radiance. For the pixels that the
+// depth test leaves: those that show geometry.
+#include "frame/pixel_rays.glsl"
 #include "lib/octahedral.glsl"
 #include "lib/punctual_light.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(location = PIXEL_RAYS) flat in vec4 flat_lights[4 * FLAT_LIGHTS];
+layout(location = 0) out vec4 out_color;
 
 const float PI = 3.14159265358979;
+
+// What shading asks of it.
+Light flat_light(int i) {
+  Light light;
+  light.position = flat_lights[4 * i];
+  light.direction = flat_lights[4 * i + 1];
+  light.intensity = flat_lights[4 * i + 2];
+  light.cone = flat_lights[4 * i + 3];
+  return light;
+}
 
 // Irradiance of one light at p on a surface with normal n, unshadowed.
 vec3 irradiance(Light light, vec3 p, vec3 n) {
@@ -13,22 +25,24 @@ vec3 irradiance(Light light, vec3 p, vec3 n) {
   vec3 l = to_light(light, p, distance);
   float e = max(dot(n, l), 0.0);
   if (!is_directional(light)) e *= distance_falloff(distance, light.direction.w);
-  if (light.position.w == LIGHT_SPOT) e *= spot_falloff(dot(-l, light.direction.xyz), light.cone.x, light.cone.y);
+  if (has_cone(light)) e *= spot_falloff(dot(-l, light.direction.xyz), light.cone.x, light.cone.y);
   return e * light.intensity.rgb;
 }
 
+float seen(ivec2 at, int light) {
+#ifdef HAS_VISIBILITY
+  return visibility_at(at, light).x;
+#else
+  return 1.0;
+#endif
+}
+
 void main() {
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(at, imageSize(color)))) return;
-  float device_depth = depth_at(at).x;
-  vec3 p = relative_position(at, device_depth);
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec3 p = fragment_position(depth_at(at).x);
   vec3 n = octahedral_decode(normal_at(at).xy);
   vec3 sum = vec3(0.0);
-#ifdef HAS_VISIBILITY
-  for (int i = 0; i < LIGHT_COUNT; ++i) sum += visibility_at(at, i).x * irradiance(lights[i], p, n);
-#else
-  for (int i = 0; i < LIGHT_COUNT; ++i) sum += irradiance(lights[i], p, n);
-#endif
-  vec3 radiance = is_background(device_depth) ? vec3(0.0) : albedo_at(at).rgb / PI * sum;
-  imageStore(color, at, vec4(radiance, 1.0));
+  for (int i = 0; i < FLAT_LIGHTS; ++i) sum += seen(at, i) * irradiance(flat_light(i), p, n);
+  for (int i = FLAT_LIGHTS; i < LIGHT_COUNT; ++i) sum += seen(at, i) * irradiance(lights[i], p, n);
+  out_color = vec4(albedo_at(at).rgb / PI * sum, 1.0);
 }

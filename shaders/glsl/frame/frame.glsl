@@ -2,7 +2,7 @@
 #ifndef GNOMON_FRAME
 #define GNOMON_FRAME
 
-#include "lib/light_face.glsl"
+#include "lib/light_view.glsl"
 
 layout(set = 0, binding = 0, std140) uniform Frame {
   mat4 clip_from_relative;
@@ -10,8 +10,8 @@ layout(set = 0, binding = 0, std140) uniform Frame {
   vec4 ray_corner;  // relative position at view depth 1 of the image's top left corner
   vec4 ray_dx, ray_dy;
   vec4 viewport;    // width, height, 1/width, 1/height
-  vec4 depth;       // near plane, 1 when reversed z
-  uvec4 counts;     // lights, faces, frame index
+  vec4 depth;       // near plane, 1 when reversed z, far plane (0: none) beyond which nothing is drawn
+  uvec4 counts;     // lights, unused, frame index
   mat4 previous_clip_from_relative;  // the previous frame's camera; positions relative to this frame's eye
 } frame;
 
@@ -21,13 +21,21 @@ struct Light {
   vec4 direction;   // unit, the way it shines; w: range, 0 = unlimited
   vec4 intensity;   // candela or lux, linear RGB
   vec4 cone;        // cosines of the inner and outer half angle
-  uvec4 faces;      // first, count
+  vec4 size;        // half width, half height, world units; SHAPE_*; of a directional light the tangent of half its
+                    // angular diameter. All 0 without a size
 };
+#define SHAPE_RECTANGLE 0.0
+#define SHAPE_DISC 1.0
+#define SHAPE_SPHERE 2.0
+#define SHAPE_POLYGON 3.0
 #define LIGHT_SPOT 0.0
 #define LIGHT_POINT 1.0
 #define LIGHT_DIRECTIONAL 2.0
+#define LIGHT_WIDE_SPOT 3.0  // with a point light's views
 
-bool is_directional(Light light) { return told_directional(light.position.w == LIGHT_DIRECTIONAL); }
+bool has_cone(Light light) { return light.position.w == LIGHT_SPOT || light.position.w == LIGHT_WIDE_SPOT; }
+
+bool is_directional(Light light) { return known_directional(light.position.w == LIGHT_DIRECTIONAL); }
 
 struct Instance {
   mat4 relative_from_object;
@@ -41,12 +49,11 @@ struct Material {
 
 // Uniform buffers: a uniform index makes a uniform load, which software devices do once for all invocations.
 layout(set = 0, binding = 1, std140) uniform Lights { Light lights[LIGHT_COUNT]; };
-layout(set = 0, binding = 2, std140) uniform Faces { LightFace faces[FACE_COUNT]; };
-layout(set = 0, binding = 3, std430) readonly buffer Instances { Instance instances[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Materials { Material materials[]; };
-layout(set = 0, binding = 5, std430) readonly buffer TriangleNormals { uint triangle_normals[]; };
-layout(set = 0, binding = 6, std430) readonly buffer Positions { float scene_positions[]; };
-layout(set = 0, binding = 7, std430) readonly buffer Indices { uint scene_indices[]; };
+layout(set = 0, binding = 2, std430) readonly buffer Instances { Instance instances[]; };
+layout(set = 0, binding = 3, std430) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = 4, std430) readonly buffer TriangleNormals { uint triangle_normals[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Positions { float scene_positions[]; };
+layout(set = 0, binding = 6, std430) readonly buffer Indices { uint scene_indices[]; };
 
 // Depth of the camera's infinite projection. Reversed: d = near / z; standard: d = 1 - near / z.
 bool is_background(float device_depth) { return frame.depth.y != 0.0 ? device_depth <= 0.0 : device_depth >= 1.0; }
@@ -103,33 +110,5 @@ bool in_range(Light light, vec3 p) {
 
 // The light of a layer of an image. A single one's loads are uniform wherever the layer's number comes from.
 int light_of(int layer) { return LIGHT_COUNT == 1 ? 0 : layer; }
-
-// The only face of a light's shadow map, or the first of a point light's.
-LightFace first_face(int light) {
-#if FACE_COUNT == LIGHT_COUNT  // one each
-  return faces[light];
-#else
-  return faces[lights[light].faces.x];
-#endif
-}
-
-// Does the shadow map of a light with that first face hold `p`? Beyond it nobody knows of shadows.
-bool in_map(Light light, LightFace face, vec3 p) {
-#if FACE_COUNT != LIGHT_COUNT
-  if (light.faces.y != 1) return true;  // a point light's faces see everything
-#endif
-  return face_sees(face_project(face, face_space(face, vec4(p, 1.0))));
-}
-bool in_map(int light, vec3 p) { return in_map(lights[light], first_face(light), p); }
-
-// The face of the shadow map that sees `p`: of a point light, the one of its major axis (+x -x +y -y +z -z).
-uint face_of(Light light, vec3 p) {
-  if (light.faces.y == 1) return light.faces.x;
-  vec4 h = vec4(p, 1.0);
-  vec3 q = vec3(dot(light.rows[0], h), dot(light.rows[1], h), dot(light.rows[2], h));
-  vec3 a = abs(q);
-  uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
-  return light.faces.x + 2 * axis + (q[axis] < 0.0 ? 1 : 0);
-}
 
 #endif

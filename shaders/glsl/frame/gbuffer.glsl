@@ -1,14 +1,17 @@
 // G-buffer (Saito and Takahashi 1990): octahedral shading and geometric normals, albedo; depth is fixed-function.
+// Inputs as scene.vert.glsl has them.
 #include "frame/frame.glsl"
 #include "lib/octahedral.glsl"
 #include "frame/pixel_state.glsl"
 
-layout(push_constant) uniform Push { uint instance, material; } push;
-layout(set = 2, binding = 0) uniform sampler2D base_color_texture;
 layout(location = 0) in vec3 in_relative;
-layout(location = 1) in vec2 in_uv;
-layout(location = 2) in vec3 in_normal;
-layout(location = 3) in vec4 in_color;
+layout(location = 1) in vec3 in_normal;
+layout(location = 2) flat in vec4 in_base_color;
+layout(location = 3) flat in vec4 in_normal_columns[3];
+layout(location = 6) flat in uvec2 in_draw;
+layout(set = 2, binding = 0) uniform sampler2D base_color_texture;
+layout(location = 7) in vec2 in_uv;
+layout(location = 8) in vec4 in_color;
 // Channels that somebody reads; each is defined as its location.
 #ifdef NORMAL
 layout(location = NORMAL) out vec2 out_normal;
@@ -25,23 +28,23 @@ layout(location = UNSHADOWED_LOCATION) out float out_unshadowed[LIGHT_COUNT];
 #endif
 
 // From the triangle itself, not from screen derivatives: exact at silhouettes and on slivers.
-vec3 geometric_normal(Instance instance) {
-  vec3 n = octahedral_decode(unpackSnorm2x16(triangle_normals[instance.info.x + gl_PrimitiveID]));
-  vec3 turned = instance.normal_columns[0].xyz * n.x + instance.normal_columns[1].xyz * n.y + instance.normal_columns[2].xyz * n.z;
-  return normalize(instance.info.z != 0 ? -turned : turned);
+vec3 geometric_normal() {
+  vec3 n = octahedral_decode(unpackSnorm2x16(triangle_normals[in_draw.x + gl_PrimitiveID]));
+  return normalize(in_normal_columns[0].xyz * n.x + in_normal_columns[1].xyz * n.y + in_normal_columns[2].xyz * n.z);
 }
 
 void main() {
-  Instance instance = instances[push.instance];
-  Material material = materials[push.material];
-  vec4 color = material.base_color * in_color * texture(base_color_texture, in_uv);
-#ifdef MASKED
-  if (color.a < material.alpha.x) discard;
+#ifdef FAR_PLANE  // the projection's is infinitely far
+  if (gl_FragCoord.w * frame.depth.z < 1.0) discard;
 #endif
-  vec3 geometric = geometric_normal(instance);
-  vec3 shading = normalize(instance.info.z != 0 ? -in_normal : in_normal);
+  vec4 color = in_base_color * in_color * texture(base_color_texture, in_uv);
+#ifdef MASKED
+  if (color.a < in_normal_columns[0].w) discard;
+#endif
+  vec3 geometric = geometric_normal();
+  vec3 shading = normalize(in_normal);
   // Double-sided meshes are seen from either side: normals turn to the camera.
-  if (material.alpha.y != 0.0 && dot(geometric, in_relative) > 0.0) geometric = -geometric;
+  if (in_draw.y != 0u && dot(geometric, in_relative) > 0.0) geometric = -geometric;
   if (dot(shading, geometric) < 0.0) shading = -shading;
 #ifdef NORMAL
   out_normal = octahedral_encode(shading);

@@ -14,20 +14,21 @@ uint list_slot() {
   return (gl_WorkGroupID.y * LIST_ROW + gl_WorkGroupID.x) * LIST_GROUP + gl_LocalInvocationID.x;
 }
 
-// `width`: of the image.
-void list_pixel(ivec2 pixel, int width) {
-  uint slot = atomicAdd(arguments[3], 1u);
-  if (slot % LIST_GROUP == 0u) {
-    atomicMax(arguments[0], list_groups(slot).x);
-    if (list_groups(slot).y > 1u) atomicMax(arguments[1], list_groups(slot).y);
+// Functions of a list: `add` puts a pixel of an image of this width into it; `get` is false for invocations beyond the list's end.
+#define PIXEL_LIST(add, get, pixels, words)                                     \
+  void add(ivec2 pixel, int width) {                                            \
+    uint slot = atomicAdd(words[3], 1u);                                        \
+    if (slot % LIST_GROUP == 0u) {                                              \
+      atomicMax(words[0], list_groups(slot).x);                                 \
+      if (list_groups(slot).y > 1u) atomicMax(words[1], list_groups(slot).y);   \
+    }                                                                           \
+    pixels[slot] = pixel.y * width + pixel.x;                                   \
+  }                                                                             \
+  bool get(uint slot, int width, out ivec2 pixel) {                             \
+    bool there = slot < words[3];                                               \
+    uint index = there ? pixels[slot] : 0u;                                     \
+    pixel = ivec2(index % width, index / width);                                \
+    return there;                                                               \
   }
-  listed[slot] = pixel.y * width + pixel.x;
-}
 
-// False for invocations beyond the list's end.
-bool listed_pixel(uint slot, int width, out ivec2 pixel) {
-  bool there = slot < arguments[3];
-  uint index = there ? listed[slot] : 0u;
-  pixel = ivec2(index % width, index / width);
-  return there;
-}
+PIXEL_LIST(list_pixel, listed_pixel, listed, arguments)

@@ -2,7 +2,7 @@
 #ifndef GNOMON_RECEIVING
 #define GNOMON_RECEIVING
 
-#include "frame/frame.glsl"
+#include "map/views.glsl"
 #include "lib/octahedral.glsl"
 
 struct Receiving {
@@ -11,19 +11,19 @@ struct Receiving {
   bool receives;          // geometry in the map that faces the light: the shadow map decides
 };
 
-// `encoded`: octahedral geometric normal. `light`, `face`: of the layer; whoever asks in a loop loads them before it.
-Receiving make_receiving(ivec2 pixel, float device_depth, vec2 encoded, Light light, LightFace face) {
+// `encoded`: octahedral geometric normal. `light`, `widest`: of the layer; whoever asks in a loop loads them before it.
+Receiving make_receiving(ivec2 pixel, float device_depth, vec2 encoded, Light light, LightView widest) {
   Receiving r;
   r.position = relative_position(pixel, device_depth);
   r.normal = octahedral_decode(encoded);
   r.depth = view_depth(device_depth);
-  r.receives = !is_background(device_depth) && faces_light(light, r.position, r.normal) && in_map(light, face, r.position);
+  r.receives = !is_background(device_depth) && faces_light(light, r.position, r.normal) && in_map(light, widest, r.position);
   return r;
 }
 
 Receiving receiving_at(ivec2 pixel, int layer) {
   int light = light_of(layer);
-  return make_receiving(pixel, depth_at(pixel).x, geometric_at(pixel).xy, lights[light], first_face(light));
+  return make_receiving(pixel, depth_at(pixel).x, geometric_at(pixel).xy, lights[light], widest_view(light));
 }
 
 #endif

@@ -9,9 +9,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 const ivec2 OFFSET[4] = ivec2[4](ivec2(0, 1), ivec2(1, 1), ivec2(1, 0), ivec2(0, 0));  // in the order of textureGather
 
-float tested(ivec2 at, float device_depth, vec3 normal, Light light, LightFace face, int width) {
+float tested(ivec2 at, float device_depth, vec3 normal, Light light, LightView view, int width) {
   Query query;
-  int state = make_query(at, device_depth, normal, light, face, query);
+  int state = make_query(at, device_depth, normal, light, view, query);
   ivec2 texel = ivec2(floor(query.position));
   bvec4 neighbours;
   bool lit = is_lit_cross(query, texel, neighbours);
@@ -31,20 +31,20 @@ void main() {
   vec4 normals_x = textureGather(geometric, corner, 0), normals_y = textureGather(geometric, corner, 1);
   vec4 v = vec4(1.0);
   Light light = lights[push.light];
-  LightFace face = faces[push.face];
+  LightView view = views[push.view];
   uint undecided = 0u;
   for (int i = 0; i < 4; ++i) {
     ivec2 at = first + OFFSET[i];
     vec3 n = octahedral_decode(vec2(normals_x[i], normals_y[i]));
     bool there = !is_background(depths[i]) && all(lessThan(at, size));
-    bool faces = faces_light(light, relative_position(at, depths[i]), n);
-    if (there && !faces) v[i] = unmapped_visibility(PIXEL_AWAY);
-    if (there && faces) undecided |= 1u << i;
+    bool faced = faces_light(light, relative_position(at, depths[i]), n);
+    if (there && !faced) v[i] = unmapped_visibility(PIXEL_AWAY);
+    if (there && faced) undecided |= 1u << i;
   }
   if (undecided != 0u) {
     do {
       int i = findLSB(undecided);
-      v[i] = tested(first + OFFSET[i], depths[i], octahedral_decode(vec2(normals_x[i], normals_y[i])), light, face, size.x);
+      v[i] = tested(first + OFFSET[i], depths[i], octahedral_decode(vec2(normals_x[i], normals_y[i])), light, view, size.x);
       undecided &= undecided - 1u;
     } while (undecided != 0u);
   }

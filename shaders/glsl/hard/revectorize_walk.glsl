@@ -12,7 +12,7 @@ bool rbsm_lit(ivec2 texel, inout float lowering) {
 #else
   // Section 3.1.3: the fragment's own depth, lowered by epsilon (of the depth range) where the map is that close, and kept
   // lowered for the rest of the walk: lowering that is restored is only a constant bias.
-  float z = receiver_depth(query.face, query.plane, query.plane.texel, ENCODING == ENCODING_LINEAR) - lowering;
+  float z = receiver_depth(query.view, query.plane, query.plane.texel, ENCODING == ENCODING_LINEAR) - lowering;
   float s = map_depth(query, texel);
   if (abs(z - s) < params.epsilon) {
     lowering += params.epsilon;

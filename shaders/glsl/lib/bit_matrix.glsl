@@ -2,7 +2,7 @@
 #ifndef GNOMON_BIT_MATRIX
 #define GNOMON_BIT_MATRIX
 
-#include "lib/subgroup.glsl"
+#include "subgroup.glsl"
 
 const uint MATRIX_SIDE = 32u;
 const uint MATRIX_INVOCATIONS = min(SUBGROUP_INVOCATIONS, 16u);  // that share a matrix: neighbours in the subgroup

@@ -17,4 +17,10 @@ int min_max_compare(vec2 receiver, vec2 map) {
   return receiver.y <= map.x ? PLAINLY_LIT : receiver.x > map.y ? PLAINLY_DARK : MIXED;
 }
 
+// Min-max pyramids: level i holds blocks of 2^(i+1) texels a side, and the last blocks of a level reach to the map's border.
+// The block of a level of `blocks` blocks that a texel of the map is in.
+ivec2 pyramid_block(ivec2 texel, int level, ivec2 blocks) { return min(texel >> (level + 1), blocks - 1); }
+// The finest level of which a window of so many texels, wherever it stands, touches at most 2 blocks on an axis.
+int pyramid_level(int texels) { return texels <= 3 ? 0 : findMSB(texels - 2); }
+
 #endif

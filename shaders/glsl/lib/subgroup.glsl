@@ -1,5 +1,5 @@
-// Over the invocations of a subgroup, all of which must take part, of a workgroup that has only x. With shuffles, which software
-// devices turn into an instruction each, while they walk all invocations for a vote.
+// Over the invocations of a subgroup, all of which must take part, of a workgroup that has only x. With shuffles, which
+// software devices turn into an instruction each, while they walk all invocations for a vote.
 #ifndef GNOMON_SUBGROUP
 #define GNOMON_SUBGROUP
 

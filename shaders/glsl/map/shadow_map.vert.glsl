@@ -1,4 +1,4 @@
-// Vertices of the scene for the faces of a shadow map: one instance a face, which is also the layer.
+// Vertices of the scene for the views of a shadow map: one instance a view, which is also the layer.
 #include "frame/frame.glsl"
 
 layout(push_constant) uniform Push { uint instance; } push;
@@ -16,13 +16,13 @@ layout(location = 1) out float out_depth;
 #endif
 
 void main() {
-#if FACE_COUNT == 1
-  LightFace face = faces[0];
+#if VIEWS_COUNT == 1
+  LightView view = views[0];
 #else
-  LightFace face = faces[gl_InstanceIndex];
+  LightView view = views[gl_InstanceIndex];
 #endif
   vec4 relative = instances[push.instance].relative_from_object * vec4(in_position, 1.0);
-  gl_Position = face.clip_from_relative * vec4(relative.xyz, 1.0);
+  gl_Position = view.clip_from_relative * vec4(relative.xyz, 1.0);
   gl_Layer = gl_InstanceIndex;
 #ifdef MASKED
   out_uv = in_uv;
@@ -30,6 +30,6 @@ void main() {
   out_instance = push.instance;
 #endif
 #ifdef LINEAR_DEPTH
-  out_depth = encode_linear(face, -face_space(face, vec4(relative.xyz, 1.0)).z);
+  out_depth = encode_linear(view, -light_space(view, vec4(relative.xyz, 1.0)).z);
 #endif
 }

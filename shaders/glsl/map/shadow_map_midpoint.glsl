@@ -9,15 +9,15 @@ void main() {
   if (any(greaterThanEqual(at.xy, size))) return;
   float a = first_at(at.xy, at.z).x, b = second_at(at.xy, at.z).x;
   // Nothing behind: the background counts as infinitely far, and half of that is no surface; the first one stands.
-  LightFace face = faces[at.z];
+  LightView view = views[at.z];
   float middle = a;
   if (b < 1.0) {
 #if ENCODING == ENCODING_LINEAR
     middle = 0.5 * (a + b);
 #else
-    middle = is_orthographic(face)
+    middle = is_orthographic(view)
                  ? 0.5 * (a + b)
-                 : encode_perspective(face, 2.0 / (decode_perspective(face, a) + decode_perspective(face, b)));
+                 : encode_perspective(view, 2.0 / (decode_perspective(view, a) + decode_perspective(view, b)));
 #endif
   }
   imageStore(depth, at, vec4(middle));

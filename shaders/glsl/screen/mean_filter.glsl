@@ -1,6 +1,7 @@
 // The edge-aware separable mean filter (Macedo 2018, ch. 4.2.3, eq. 4.4-4.5), one direction: running sums along the strip's
 // lines, so that a pixel's mean is the difference of two, whatever the width.
 #include "screen/strip_filter_line.glsl"
+#include "screen/mean_filter_edge.glsl"
 
 // Sums are integers, which add up exactly in any order and may wrap: 2^24 a unit of visibility is the precision of its float.
 const float UNIT = 16777216.0;
@@ -15,14 +16,6 @@ shared float depths[SPAN * LINES];  // along the view axis
 // What an invocation reads of its line again and again.
 uint before_part[PARTS];  // sum of the parts before each
 uint edge_window[4];      // words of edges, from the one before that of the first place on
-
-// Between neighbouring pixels: each may see the other's surface edge-on, so either plane will do.
-bool edge_between(Receiving a, Receiving b) {
-  if (!a.receives || !b.receives) return true;
-  float tolerance = params.depth_tolerance;
-  return !same_surface(a.position, a.normal, b.position, a.depth, tolerance) &&
-         !same_surface(b.position, b.normal, a.position, b.depth, tolerance);
-}
 
 void sum_part(Strip strip) {
   int first = part() * PART, end = min(first + PART, strip.places);

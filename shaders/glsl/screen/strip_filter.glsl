@@ -6,9 +6,10 @@
 // and where the receiver turns away from the light.
 //
 // The width is that of (4.4) and (4.5): (4.4) has no unit; here `width` is in pixels at view depth `reference_depth`, and goes
-// with 1 / depth.
+// with 1 / depth. With an image `width` it is what the penumbra covers at the pixel's depth.
 #include "frame/receiving.glsl"
 #include "lib/same_surface.glsl"
+#include "lib/soft_shadow.glsl"
 #include "lib/tiles.glsl"
 
 layout(push_constant) uniform Push { float reference_depth; } push;  // world units
@@ -29,10 +30,18 @@ uint content_of(float visibility) {
 const int ALONG_X = 0, ALONG_Y = 4, REACH = 8;
 
 // Pixels to each side, whole and in part.
+#ifdef HAS_WIDTH
+float half_width(ivec2 pixel, int layer, float view_depth) {
+  float half_tangent = 0.5 * frame.viewport.y * length(frame.ray_dy.xyz);
+  float pixels = screen_width(width_at(pixel, layer).x, frame.viewport.y, half_tangent, view_depth);
+  return clamp(0.5 * (pixels - 1.0), 0.0, float(params.largest));
+}
+#else
 float half_width(float view_depth) {
   float width = params.width * push.reference_depth / view_depth;
   return clamp(0.5 * (width - 1.0), 0.0, float(MAX_HALF));
 }
+#endif
 
 ivec2 image_size() { return imageSize(visibility).xy; }
 ivec2 cells_of(ivec2 size) { return (size + CELL - 1) / CELL; }

@@ -22,7 +22,7 @@ struct Strip {
   ivec2 origin;    // first pixel
   int layer;
   Light light;     // of the layer
-  LightFace face;  // its only one or first
+  LightView view;  // its widest
   uint needed;     // cells whose result is needed, a bit each; none beyond the list's end
   int reach;       // pixels, of the widest filter in the frame
   int places;      // of a line; they run from `reach` + 1 before the strip to as many behind it
@@ -46,7 +46,7 @@ Strip strip_of_workgroup() {
   strip.origin = at * (ALONG * LENGTH + ALONG.yx * CELL);
   strip.layer = tile.layer;
   strip.light = lights[light_of(tile.layer)];
-  strip.face = first_face(light_of(tile.layer));
+  strip.view = widest_view(light_of(tile.layer));
   strip.needed = listed ? needed : 0u;
   strip.reach = int(control[REACH]);
   strip.places = listed ? LENGTH + 2 * strip.reach + 2 : 0;
@@ -109,7 +109,7 @@ Receiving surface_at(Strip strip, int place, bool keep) {
 #else
   float device_depth = depth_at(at.xy).x;
   vec2 encoded = geometric_at(at.xy).xy;  // of two signed normalised 16-bit numbers: nothing is lost
-  Receiving r = make_receiving(at.xy, device_depth, encoded, strip.light, strip.face);
+  Receiving r = make_receiving(at.xy, device_depth, encoded, strip.light, strip.view);
   if (keep && inside)
     imageStore(surfaces, at, uvec4(floatBitsToUint(device_depth), r.receives ? packSnorm2x16(encoded) : RECEIVES_NOT, 0u, 0u));
 #endif

@@ -16,9 +16,17 @@ void main() {
     content |= content_of(imageLoad(visibility, ivec3(pixel, tile.layer)).x);
   }
   atomicOr(cell_states[(tile.layer * cells.y + corner.y / CELL) * cells.x + corner.x / CELL], content);
-  vec4 depths = textureGather(depth, vec2(min(corner + 1, size - 1)) / vec2(size));
   float reach = 0.0;
+#ifdef HAS_WIDTH
+  for (int i = 0; i < 4; ++i) {
+    ivec2 pixel = min(corner + ivec2(i % 2, i / 2), size - 1);
+    float device_depth = depth_at(pixel).x;
+    if (!is_background(device_depth)) reach = max(reach, half_width(pixel, tile.layer, view_depth(device_depth)));
+  }
+#else
+  vec4 depths = textureGather(depth, vec2(min(corner + 1, size - 1)) / vec2(size));
   for (int k = 0; k < 4; ++k)
     if (!is_background(depths[k])) reach = max(reach, half_width(view_depth(depths[k])));
+#endif
   atomicMax(control[REACH], uint(ceil(reach)));
 }

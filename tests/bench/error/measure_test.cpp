@@ -159,7 +159,23 @@ TEST(Measure, RowHasTheNamesOfTheDesign) {
         "leak", "over_shadow", "acne", "ssim", "flip", "pixels", "excluded", "nonfinite"})
     EXPECT_TRUE(json.contains(name)) << name;
   EXPECT_FALSE(json.contains("penumbra_rmse"));  // hard shadows have none
-  EXPECT_FALSE(json.contains("lights"));
+  ASSERT_EQ(json.at("lights").size(), 1u);       // one shape, however many lights
+  EXPECT_EQ(json.at("lights").at(0).at("rmse"), json.at("rmse"));
+}
+
+TEST(Measure, WithoutCountedPixelsThereIsAReasonAndNoFigure) {
+  Reference r = trace(square_over_plane(light(LightType::spot, {0, 6, 0})));
+  for (size_t i = 0; i < r.domain[0].size(); ++i)
+    r.domain[0][i] = i < 3 ? Reference::outside_light : Reference::faces_away;
+  const MeasuredError e = measure_visibility(perfect(r), r);
+  EXPECT_EQ(e.all.pixels, 0u);
+  EXPECT_EQ(e.all.reason, e.lights[0].reason);
+  EXPECT_EQ(e.all.reason, "no pixel counts: " + std::to_string(r.domain[0].size() - 3) +
+                              " face away from the light, 3 lie outside of what it shines on");
+  const nlohmann::json json = to_json(e);
+  EXPECT_TRUE(json.at("rmse").is_null());
+  EXPECT_TRUE(json.at("lights").at(0).at("misclassified").is_null());
+  EXPECT_EQ(json.at("reason"), e.all.reason);
 }
 
 TEST(Measure, BadInput) {

@@ -1,3 +1,4 @@
+// Which measurements no other beats, on lists worked out by hand.
 #include "bench/report/pareto.h"
 
 #include <gtest/gtest.h>

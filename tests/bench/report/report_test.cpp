@@ -47,9 +47,15 @@ json row(const std::string& graph, int map, double ms, double rmse, double ratio
       {"status", "ok"}};
 }
 
+std::vector<Row> typed(const std::vector<json>& objects) {
+  std::vector<Row> rows;
+  for (const json& one : objects) rows.push_back(row_from(one));
+  return rows;
+}
+
 json report_of(const std::vector<json>& rows) {
   std::vector<ReportRow> sources;
-  for (const json& one : rows) sources.push_back({one, "."});
+  for (const Row& one : typed(rows)) sources.push_back({one, "."});
   return report_data(sources);
 }
 
@@ -158,10 +164,56 @@ TEST(Report, CsvHasALinePerRowAndQuotes) {
   EXPECT_NE(csv.find("\"p,c\"\"f\""), std::string::npos) << csv;
 }
 
+TEST(Report, CsvHasNoFormulas) {
+  json odd = row("=cmd|' /C calc'!A0", 512, 10, 0.2);
+  odd["scene"] = "@sum(1)", odd["device"] = "+1";
+  const std::string csv = report_csv(report_of({odd}));
+  for (const char* cell : {"\"'=cmd|", "\"'@sum(1)\"", "\"'+1\""})
+    EXPECT_NE(csv.find(cell), std::string::npos) << cell << "\n" << csv;
+  EXPECT_EQ(csv.find(",="), std::string::npos);
+  json negative = row("pcf", 512, 10, 0.2, -1);  // numbers stay numbers
+  EXPECT_NE(report_csv(report_of({negative})).find(",-1,"), std::string::npos);
+}
+
+TEST(Report, TheBaselineIsTheRowThatSaysSo) {
+  json base = row("pcf", 512, 10, 0.2), other = row("pcf", 1024, 10, 0.2);
+  base["baseline"] = true;
+  base["ratio"]["mad"] = 0.01;  // measured again with each group, it need not be 1
+  const json report = report_of({base, other});
+  EXPECT_EQ(report["rows"][0]["baseline"], true);
+  EXPECT_EQ(report["rows"][1]["baseline"], false);
+}
+
+TEST(Report, FiguresThatDoNotExistAreEmpty) {
+  json none = row("pcf", 512, 10, 0.2);
+  none["error"] = {{"rmse", nullptr}, {"misclassified", nullptr}, {"reason", "no pixel counts"}};
+  none["frame_ms"] = none["ratio"] = nullptr;
+  const json report = report_of({none});
+  EXPECT_TRUE(report["rows"][0]["errors"].empty());
+  EXPECT_TRUE(report["rows"][0]["ms"].is_null());
+  EXPECT_TRUE(report["places"][0]["fronts"].empty());
+}
+
+TEST(Rows, AMemberOfAnotherKindIsAnErrorWithItsPlace) {
+  json bad = row("pcf", 512, 10, 0.2);
+  bad["frame_ms"]["median"] = "ten";
+  try {
+    row_from(bad, "results.jsonl", "line 3");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "results.jsonl: line 3: /frame_ms/median: must be a number");
+  }
+  EXPECT_THROW(row_from({{"camera", -1}}), Error);
+  EXPECT_THROW(row_from({{"camera", 1e30}}), Error);
+  EXPECT_THROW(row_from({{"passes", json::object()}}), Error);
+  EXPECT_FALSE(row_from(json::object()).ok());
+}
+
 class Merge : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "report_merge";
+    folder_ = fs::path(testing::TempDir()) /
+              ("report_merge_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "a");
     fs::create_directories(folder_ / "b");
@@ -181,16 +233,21 @@ TEST_F(Merge, TakesTheLatestRowThatIsOk) {
   write("b", {row("esm", 512, 20, 0.2), failed, row("vsm", 512, 1, 1)});
   const auto rows = merge_results({folder_ / "a", folder_ / "b"});
   ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(rows[0].row["frame_ms"]["median"], 10);
-  EXPECT_EQ(rows[1].row["frame_ms"]["median"], 20);
+  EXPECT_EQ(rows[0].row.frame_ms->median, 10);
+  EXPECT_EQ(rows[1].row.frame_ms->median, 20);
   EXPECT_EQ(rows[1].folder, folder_ / "b");
-  EXPECT_EQ(rows[2].row["graph"], "vsm");
+  EXPECT_EQ(rows[2].row.graph, "vsm");
 }
 
 TEST_F(Merge, SaysWhatIsMissing) {
   EXPECT_THROW(merge_results({folder_ / "c"}), Error);
   write("a", {});
   EXPECT_THROW(merge_results({folder_ / "a"}), Error);
+}
+
+Comparison compare_results(const std::vector<json>& before, const std::vector<json>& after,
+                           double tolerance) {
+  return gnomon::compare_results(typed(before), typed(after), tolerance);
 }
 
 TEST(Compare, EqualRunsHaveNoChange) {
@@ -216,6 +273,7 @@ TEST(Compare, CountsTheIntervalsThatOverlap) {
   // Intervals are 2 % to both sides; the baseline's own says nothing.
   json baseline = row("shadow_mapping", 512, 5, 0.3);
   baseline["ratio"]["ci95"] = {1, 1};
+  baseline["baseline"] = true;
   const std::vector<json> before = {baseline, row("pcf", 512, 10, 0.2, 2), row("esm", 512, 10, 0.2, 2)};
   const Comparison comparison =
       compare_results(before, {baseline, row("pcf", 512, 10, 0.2, 2.05), row("esm", 512, 10, 0.2, 1.9)}, 0.1);
@@ -248,8 +306,8 @@ TEST(Compare, RowsThatFailNowAreRegressionsAndMissingOnesAreNot) {
 TEST(Pick, TakesTheLeastErrorInTimeAndTheLeastTimeForAnError) {
   json failed = row("msm", 512, 1, 0);
   failed["status"] = "error: lost";
-  const std::vector<json> rows = {row("pcf", 512, 10, 0.2), row("pcf", 2048, 40, 0.05),
-                                  row("esm", 512, 20, 0.1), failed};
+  const std::vector<Row> rows =
+      typed({row("pcf", 512, 10, 0.2), row("pcf", 2048, 40, 0.05), row("esm", 512, 20, 0.1), failed});
   PickRule rule;
   rule.max_ms = 22;  // esm's interval ends at 22
   EXPECT_EQ(pick_row(rows, rule), std::optional<size_t>(2));

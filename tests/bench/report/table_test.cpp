@@ -1,3 +1,4 @@
+// Tables of result rows, word by word.
 #include "bench/report/table.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,12 @@ namespace gnomon {
 namespace {
 
 using nlohmann::json;
+
+std::string to_table(const std::vector<json>& objects) {
+  std::vector<Row> rows;
+  for (const json& one : objects) rows.push_back(row_from(one));
+  return gnomon::to_table(rows);
+}
 
 json row(const std::string& scene, const std::string& graph, int map, double misclassified, double ms,
          double ratio) {
@@ -105,7 +112,7 @@ TEST(Table, ColumnsLineUp) {
   }
 }
 
-TEST(Table, NoRowsGiveNoText) { EXPECT_EQ(to_table({}), ""); }
+TEST(Table, NoRowsGiveNoText) { EXPECT_EQ(gnomon::to_table(std::vector<Row>()), ""); }
 
 }  // namespace
 }  // namespace gnomon

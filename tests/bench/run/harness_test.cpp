@@ -2,13 +2,17 @@
 #include "bench/run/harness.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 
+#include "bench/run/output_lock.h"
 #include "bench/run/results.h"
 #include "bench/run/rounds.h"
 #include "engine/base/error.h"
@@ -183,7 +187,8 @@ class HarnessTest : public testing::Test {
       test.frames_ += config.graph.name + std::to_string(index) + " ";
     }
     void finish(const SuiteConfig&, Subject&, Row& row) override {
-      row.error_json = R"({"misclassified": 0.25})";
+      row.error.emplace().all.misclassified = 0.25;
+      if (test.large_rows_) row.warnings = {std::string(1 << 20, 'x')};
       row.nonfinite = test.nonfinite_;
     }
   };
@@ -194,7 +199,7 @@ class HarnessTest : public testing::Test {
     };
   }
   BenchResult run() { return run_suite(suite_, options_, stages()); }
-  std::vector<json> rows() const { return read_results(options_.out / "results.jsonl"); }
+  std::vector<json> rows() const { return read_lines(options_.out / "results.jsonl"); }
 
   fs::path folder_;
   Suite suite_;
@@ -203,6 +208,7 @@ class HarnessTest : public testing::Test {
   std::string log_, broken_scene_, frames_;
   int alive_ = 0, most_alive_ = 0;
   uint64_t nonfinite_ = 0;
+  bool large_rows_ = false;
 };
 
 TEST_F(HarnessTest, RowHasTheStatedFields) {
@@ -224,6 +230,66 @@ TEST_F(HarnessTest, RowHasTheStatedFields) {
   EXPECT_EQ(row["passes"][0]["id"], "shade");
   EXPECT_EQ(row["passes"][0]["gpu_ms"]["isolated"]["median"], 1.5);
   EXPECT_EQ(row["ratio"]["median"], 1);
+  EXPECT_EQ(row["baseline"], true);
+}
+
+TEST_F(HarnessTest, RowsAreReadAsTheyWereWritten) {
+  add("other", 0);
+  ms_ = {{"base", {2}}, {"other", {4}}};
+  run();
+  const auto written = rows();
+  const auto read = read_results(options_.out / "results.jsonl");
+  ASSERT_EQ(read.size(), written.size());
+  for (size_t i = 0; i < read.size(); ++i) EXPECT_EQ(to_json(read[i]), written[i]) << i;
+  EXPECT_FALSE(read[1].is_baseline);
+  EXPECT_EQ(read[1].ratio->baseline, label_of(read[0]));
+}
+
+// A file-size limit stands for a full disk: the row that does not fit ends the suite, the others are kept.
+TEST_F(HarnessTest, FullDiskEndsTheSuiteAndKeepsTheRows) {
+  add("other", 0);
+  ms_ = {{"base", {2}}, {"other", {4}}};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  StageMaker maker = stages();
+  const auto limited = [&](const Suite& suite, const SuitePlace& place) {
+    if (place.scene.stem() == "two") {
+      large_rows_ = true;
+      const rlimit low{256 << 10, before.rlim_max};
+      setrlimit(RLIMIT_FSIZE, &low);
+    }
+    return maker(suite, place);
+  };
+  const BenchResult result = run_suite(suite_, options_, limited);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_NE(result.stopped.find("cannot write"), std::string::npos) << result.stopped;
+  EXPECT_EQ(result.measured, 2u);
+  EXPECT_EQ(rows().size(), 2u);
+  large_rows_ = false;
+  options_.resume = true;
+  const BenchResult rest = run();
+  EXPECT_EQ(rest.stopped, "");
+  EXPECT_EQ(rest.resumed, 2u);
+  EXPECT_EQ(rows().size(), 4u);
+}
+
+TEST_F(HarnessTest, AFolderBelongsToOneRunAtATime) {
+  {
+    const OutputLock other(options_.out);
+    try {
+      run();
+      FAIL() << "no error";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("process " + std::to_string(getpid())), std::string::npos)
+          << error.what();
+    }
+    EXPECT_FALSE(fs::exists(options_.out / "results.jsonl"));
+  }
+  std::ofstream(options_.out / "in-use") << "process 1 on a machine that has died\n";  // and its lock with it
+  EXPECT_EQ(run().measured, 2u);
+  EXPECT_FALSE(fs::exists(options_.out / "in-use"));
 }
 
 TEST_F(HarnessTest, LightScalesArePlacesOfTheirOwn) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/run/rounds.h"
+#include "bench/run/row.h"
 #include "engine/scene/animation.h"
 #include "tests/engine/truth/analytic_scenes.h"
 
@@ -101,6 +102,12 @@ FrameTruth truth_of(const std::vector<float>& values, double seconds) {
   return truth;
 }
 
+json row_of(const SequenceResult& result) {
+  Row row;
+  describe_sequence(row, result);
+  return to_json(row);
+}
+
 // Errors by hand. Frame 0: 0, 0. Frame 1: the shadow moved and the result followed: 0, 0. Frame 2: -1, 0.5.
 // Frame 3: the same errors again.
 TEST(Sequence, FiguresAreThoseOfItsFrames) {
@@ -110,16 +117,16 @@ TEST(Sequence, FiguresAreThoseOfItsFrames) {
   result.add(truth_of({1, 0}, 0.2), 7, visibility({0, 0.5f}));
   result.add(truth_of({1, 0}, 0.3), 7, visibility({0, 0.5f}));
   ASSERT_EQ(result.frames().size(), 4u);
-  EXPECT_FALSE(result.frames()[0].flicker);
-  EXPECT_EQ(result.frames()[1].flicker, 0.0);
-  EXPECT_EQ(result.frames()[2].flicker, 0.75);
-  EXPECT_EQ(result.frames()[3].flicker, 0.0);  // wrong, but steady
+  EXPECT_FALSE(result.frames()[0].error->flicker);
+  EXPECT_EQ(result.frames()[1].error->flicker, 0.0);
+  EXPECT_EQ(result.frames()[2].error->flicker, 0.75);
+  EXPECT_EQ(result.frames()[3].error->flicker, 0.0);  // wrong, but steady
   const double rmse = std::sqrt(1.25 / 2);
   EXPECT_NEAR(result.rmse()->mean, rmse / 2, 1e-12);
   EXPECT_NEAR(result.rmse()->max, rmse, 1e-12);
   EXPECT_EQ(result.flicker()->mean, 0.25);
   EXPECT_EQ(result.flicker()->max, 0.75);
-  const json row = to_json(result);
+  const json row = row_of(result);
   EXPECT_EQ(row["frames"].size(), 4u);
   EXPECT_EQ(row["frames"][1]["time"], 0.1);
   EXPECT_EQ(row["frames"][1]["frame_ms"], 6);
@@ -137,7 +144,7 @@ TEST(Sequence, AFrameThatIsNotFiniteSpoilsTheFigures) {
   EXPECT_TRUE(std::isnan(result.rmse()->mean));
   EXPECT_TRUE(std::isnan(result.rmse()->max));
   EXPECT_TRUE(std::isnan(result.flicker()->max));
-  EXPECT_TRUE(to_json(result)["flicker"].is_null());
+  EXPECT_TRUE(row_of(result)["flicker"].is_null());
 }
 
 TEST(Sequence, WithoutAReferenceThereAreTimes) {
@@ -146,7 +153,7 @@ TEST(Sequence, WithoutAReferenceThereAreTimes) {
   result.add(0.5, 4);
   EXPECT_FALSE(result.rmse());
   EXPECT_FALSE(result.flicker());
-  const json row = to_json(result);
+  const json row = row_of(result);
   EXPECT_EQ(row["frames"][1], (json{{"time", 0.5}, {"frame_ms", 4.0}}));
   EXPECT_TRUE(row["flicker"].is_null());
 }

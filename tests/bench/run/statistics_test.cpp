@@ -1,3 +1,4 @@
+// Medians, deviations and intervals against values worked out by hand.
 #include "bench/run/statistics.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Suite files: sweeps, sizes, and every mistake with its place.
 #include "bench/run/suite.h"
 
 #include <gtest/gtest.h>

@@ -6,6 +6,8 @@
 #include <cctype>
 
 #include "bench/stability/stability.h"
+#include "passes/technique.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/silent_test.h"
 
 namespace gnomon {
@@ -33,15 +35,7 @@ StabilityMeasurement run(const fs::path& graph, const StabilityCase& test, bool 
 }
 
 class EveryTechnique : public test::Silent, public testing::WithParamInterface<fs::path> {};
-INSTANTIATE_TEST_SUITE_P(Stability, EveryTechnique, testing::ValuesIn(all_graphs()), [](const auto& info) {
-  std::string name = info.param.stem().string();
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
-  return name;
-});
-
-// Those with a pass that weighs the points of an area light are judged against the area light.
-bool samples_the_light(const fs::path& graph) { return graph.stem().string().starts_with("area_"); }
+INSTANTIATE_TEST_SUITE_P(Stability, EveryTechnique, testing::ValuesIn(all_graphs()), test::ParameterName());
 
 // Two cases a technique that every one must survive, and the axes in turn over the techniques.
 std::vector<StabilityCase> cases_of(const fs::path& graph) {
@@ -58,7 +52,7 @@ std::vector<StabilityCase> cases_of(const fs::path& graph) {
 }
 
 TEST_P(EveryTechnique, StaysFiniteInRangeAndRepeatable) {
-  const bool area = samples_the_light(GetParam());
+  const bool area = shadow_kind(load_graph(GetParam())) == ShadowKind::soft;  // judged against its light
   const StabilityMeasurement base = run(GetParam(), {}, area);
   ASSERT_EQ(judge_stability({}, base, base).verdict, StabilityVerdict::holds);
   ASSERT_GT(base.pixels, 500u);

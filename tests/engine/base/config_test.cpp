@@ -1,3 +1,4 @@
+// Reading JSON files: comments, places of errors, duplicate keys.
 #include "engine/base/config.h"
 
 #include <gtest/gtest.h>

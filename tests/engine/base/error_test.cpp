@@ -1,3 +1,4 @@
+// The text of errors.
 #include "engine/base/error.h"
 
 #include <gtest/gtest.h>

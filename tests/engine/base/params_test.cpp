@@ -1,3 +1,4 @@
+// Typed parameters: defaults, ranges, variables, and look-ups.
 #include "engine/base/params.h"
 
 #include <gtest/gtest.h>

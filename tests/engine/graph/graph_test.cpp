@@ -1,3 +1,4 @@
+// Graph files: every mistake with its place, orders, variables, the schema.
 #include "engine/graph/graph.h"
 #include "engine/base/resource_root.h"
 
@@ -265,7 +266,7 @@ std::vector<Bad> bad_graphs() {
        file_with(
            value_a +
            R"(, {"id": "l", "type": "loop", "controller": "b", "max": 0, "passes": [{"id": "b", "type": "t_value"}]})"),
-       {"/passes/1/max: 'max' is 0: must be an integer in 1..65536 turns"}},
+       {"/passes/1/max: 'max' is 0: must be an integer in 1..65536 iterations"}},
       {"loop in loop",
        file_with(
            value_a +
@@ -361,8 +362,11 @@ TEST_F(GraphTest, SchemaDescribesEveryPass) {
   EXPECT_EQ(params["width"]["description"], "side of the kernel; unit: texels");
   EXPECT_EQ(params["width"]["default"], 3);
   EXPECT_EQ(params["mode"]["anyOf"][0]["enum"], json::parse(R"(["box", "tent", "gauss"])"));
-  EXPECT_EQ(found["properties"]["in"]["required"], json::parse(R"(["source"])"));
-  EXPECT_EQ(found["required"], json::parse(R"(["in"])"));
+  // Inputs are connected one by one, or by naming who gives them.
+  EXPECT_EQ(found["anyOf"], json::parse(R"([{"required": ["from"]},
+      {"required": ["in"], "properties": {"in": {"required": ["source"]}}}])"));
+  EXPECT_EQ(found["properties"]["vars"]["anyOf"][0]["enum"],
+            json::parse(R"(["clamp", "mode", "scale", "width"])"));
 }
 
 // --- fuzz ---

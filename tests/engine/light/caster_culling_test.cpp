@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
 #include "tests/engine/truth/analytic_scenes.h"
 
@@ -51,7 +51,7 @@ bool meets(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& centre) {
 }
 
 std::vector<std::vector<bool>> needed_of(const Scene& scene, std::optional<uint32_t> reach) {
-  return casters_in_view(scene, scene.cameras[0], 1.5, light_faces(scene, 256, 1), 256, reach, {""});
+  return casters_in_view(scene, scene.cameras[0], 1.5, light_views(scene, 256, 1), 256, reach, {""});
 }
 
 TEST(CasterCulling, NoCasterOfAVisibleShadowIsLeftOut) {
@@ -78,12 +78,12 @@ TEST(CasterCulling, NoCasterOfAVisibleShadowIsLeftOut) {
         ++shadows;
         // A spot's map holds only what its frustum does.
         bool drawn = light.type == LightType::spot;
-        for (const auto& face : needed) drawn = drawn || face[i];
+        for (const auto& view : needed) drawn = drawn || view[i];
         EXPECT_TRUE(drawn) << "round " << round << " instance " << i;
       }
     }
-    for (const auto& face : needed)
-      for (const bool one : face) ++all, culled += one ? 0 : 1;
+    for (const auto& view : needed)
+      for (const bool one : view) ++all, culled += one ? 0 : 1;
   }
   EXPECT_GT(shadows, 1000u);
   EXPECT_GT(culled, all / 4) << "nothing much is left out";
@@ -93,7 +93,7 @@ TEST(CasterCulling, AllWhenReadersReadAnywhere) {
   std::mt19937 random(3);
   for (int round = 0; round < 20; ++round) {
     Scene scene = random_scene(random);
-    scene.lights[0].type = LightType::directional;  // its face holds all of the scene
+    scene.lights[0].type = LightType::directional;  // its view holds all of the scene
     const auto needed = needed_of(scene, std::nullopt);
     for (const bool one : needed[0]) EXPECT_TRUE(one);
   }
@@ -106,10 +106,10 @@ TEST(CasterCulling, ReachTakesMoreCastersIn) {
   for (int round = 0; round < 20; ++round) {
     const Scene scene = random_scene(random);
     const auto near = needed_of(scene, 0), far = needed_of(scene, 40);
-    for (size_t face = 0; face < near.size(); ++face)
-      for (size_t i = 0; i < near[face].size(); ++i) {
-        EXPECT_TRUE(!near[face][i] || far[face][i]);
-        few += near[face][i], many += far[face][i];
+    for (size_t view = 0; view < near.size(); ++view)
+      for (size_t i = 0; i < near[view].size(); ++i) {
+        EXPECT_TRUE(!near[view][i] || far[view][i]);
+        few += near[view][i], many += far[view][i];
       }
   }
   EXPECT_LT(few, many);

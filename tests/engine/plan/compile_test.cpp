@@ -1,3 +1,4 @@
+// Plans as text: order, culling, barriers, memory, segments.
 #include "engine/plan/compile.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ std::string file_with(const std::string& passes,
   return R"({"schema": 1, "name": "x", "passes": [)" + passes + R"(], "outputs": )" + outputs + "}";
 }
 
-constexpr Declaration::Setting tiny{{8, 8}, 1, 1};  // 256 bytes for one R32_SFLOAT image
+const Declaration::Setting tiny{{8, 8}, 1};  // 256 bytes for one R32_SFLOAT image
 
 SceneFacts facts_with(uint64_t triangles) {
   SceneFacts facts;
@@ -379,7 +380,7 @@ segments
   2 passes 4..4
   3 passes 5..5
 loops
-  again segments 1..2, controller decide, at most 8 turns
+  again segments 1..2, controller decide, at most 8 iterations
     barrier #1 data.data: compute/storage_write -> compute/storage_read|storage_write
 final
   barrier #5 end.result: compute/storage_write/general -> transfer/transfer_read/transfer_source

@@ -28,6 +28,10 @@ namespace gnomon::test {
 //   t_bypass      source -> result; need(): bypass unless the scene has triangles
 //   t_layers      -> result with one layer per light
 //   t_huge        -> result of a given size
+//   t_target      -> target, guide (both R32_SFLOAT storage)
+//   t_says        -> result that says its `tone`, and `parts` = 3
+//   t_carries     source -> result that says what the source says, and `filtered`
+//   t_asks        source -> result; `tone` is the source's; one without is refused; optional last (history)
 void register_fake_passes();
 
 }  // namespace gnomon::test

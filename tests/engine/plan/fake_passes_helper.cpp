@@ -1,3 +1,4 @@
+// Passes that only declare, for tests of the compiler.
 #include "engine/light/scene_facts.h"
 #include "tests/engine/plan/fake_passes.h"
 
@@ -158,6 +159,50 @@ struct Huge : Fake {
   }
 };
 
+struct Target : Fake {
+  void declare(Declaration& d) const override {
+    d.output("target", written, false, full_screen(d), "to be changed in place");
+    d.output("guide", written, false, full_screen(d), "beside it");
+  }
+};
+
+struct Says : Fake {
+  void declare(Declaration& d) const override {
+    const std::string tone = d.choice("tone", "warm", {"warm", "cold"}, "of the result");
+    result(d, full_screen(d));
+    d.set_trait("result", "tone", tone);
+    d.set_trait("result", "parts", int64_t{3});
+  }
+};
+
+struct Carries : Fake {
+  void declare(Declaration& d) const override {
+    d.input("source", sampled, false, "source");
+    result(d, full_screen(d));
+    d.carry_traits("source", "result");
+    d.set_trait("result", "filtered", true);
+  }
+};
+
+struct Asks : Fake {
+  void declare(Declaration& d) const override {
+    d.input("source", sampled, false, "source");
+    d.optional_input("last", sampled, false, "the frame before");
+    const Value* tone = d.trait("source", "tone");
+    if (d.is_connected("source") && !tone) d.refuse_source("source", "has no tone");
+    d.derived("source", {"tone",
+                         ParamType::choice,
+                         tone ? *tone : Value(std::string("warm")),
+                         0,
+                         0,
+                         {"warm", "cold"},
+                         {},
+                         "of the source"});
+    d.integer("width", 3, 1, 31, "texels", "side of the kernel");
+    result(d, full_screen(d));
+  }
+};
+
 template <typename T>
 std::unique_ptr<Pass> make() {
   return std::make_unique<T>();
@@ -185,6 +230,10 @@ void register_fake_passes() {
   registry.add("t_bypass", make<BypassPass>);
   registry.add("t_layers", make<Layers>);
   registry.add("t_huge", make<Huge>);
+  registry.add("t_target", make<Target>);
+  registry.add("t_says", make<Says>);
+  registry.add("t_carries", make<Carries>);
+  registry.add("t_asks", make<Asks>);
 }
 
 }  // namespace gnomon::test

@@ -13,6 +13,7 @@
 #include "engine/graph/pass.h"
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
 #include "tests/engine/truth/analytic_scenes.h"
 #include "tests/shaders/gpu_kernel_helper.h"
 
@@ -396,10 +397,13 @@ TEST_F(GpuRenderer, HistoryOfABuffer) {
   }
 }
 
-// Passes with buffers of their own keep them whichever copy of the history is in use.
-TEST_F(GpuRenderer, HistoryBesideAttachedBuffers) {
+// Kept buffers are the same whichever copy of the history is in use.
+TEST_F(GpuRenderer, HistoryBesideKeptBuffers) {
   const std::string volumes = R"({"id": "gbuffer", "type": "gbuffer"},
-    {"id": "volumes", "type": "shadow_volumes", "in": {"depth": "gbuffer.depth", "geometric": "gbuffer.geometric"}})";
+    {"id": "silhouettes", "type": "silhouettes"},
+    {"id": "volumes", "type": "shadow_volumes", "in": {"depth": "gbuffer.depth", "geometric": "gbuffer.geometric",
+      "triangles": "silhouettes.triangles", "facing": "silhouettes.facing", "edges": "silhouettes.edges",
+      "counts": "silhouettes.counts"}})";
   Renderer plain = renderer(file_with(volumes, R"({"visibility": "volumes.visibility"})"));
   plain.render(TimingMode::none);
   const auto wanted = plane(plain);
@@ -581,6 +585,20 @@ std::string error_of(Make&& make) {
     return e.what();
   }
   return {};
+}
+
+TEST_F(GpuRenderer, GraphsThatDrawNoSceneNeedNone) {
+  Renderer with = renderer(chain()),
+           without(device(), nullptr, parse_graph(chain(), "test.json"), settings());
+  with.render(TimingMode::none);
+  without.render(TimingMode::none);
+  EXPECT_EQ(plane(without), plane(with));
+  const std::string draws =
+      file_with(R"({"id": "gbuffer", "type": "gbuffer"})", R"({"depth": "gbuffer.depth"})");
+  const std::string message = error_of([&] {
+    Renderer(device(), nullptr, parse_graph(draws, "test.json"), settings()).render(TimingMode::none);
+  });
+  EXPECT_NE(message.find("pass 'gbuffer' draws the scene, and there is none"), std::string::npos) << message;
 }
 
 TEST_F(GpuRenderer, SizesThatTheDeviceCannotDo) {

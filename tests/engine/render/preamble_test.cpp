@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "engine/light/light_face.h"
+#include "engine/scene/scene.h"
 #include "engine/vulkan/shader.h"
 
 namespace gnomon {
@@ -117,18 +117,34 @@ TEST(Preamble, flags_and_choices_are_defines) {
 }
 
 TEST(Preamble, lights_of_one_kind_are_told) {
-  std::vector<LightFace> faces(2);
+  std::vector<Light> lights(2);
   EXPECT_EQ(light_kind_text({}), "");
-  EXPECT_EQ(light_kind_text(faces), "#define NO_DIRECTIONAL_LIGHTS 1\n");
-  faces[1].orthographic = true;
-  EXPECT_EQ(light_kind_text(faces), "");
-  faces[0].orthographic = true;
-  EXPECT_EQ(light_kind_text(faces), "#define ALL_DIRECTIONAL_LIGHTS 1\n");
+  EXPECT_EQ(light_kind_text(lights), "#define NO_DIRECTIONAL_LIGHTS 1\n");
+  lights[1].type = LightType::directional;
+  EXPECT_EQ(light_kind_text(lights), "");
+  lights[0].type = LightType::directional;
+  EXPECT_EQ(light_kind_text(lights), "#define ALL_DIRECTIONAL_LIGHTS 1\n");
+}
+
+TEST(Preamble, buffers_that_are_read_have_their_number_of_elements_and_uniform_ones_their_struct) {
+  Declaration::Inputs inputs;
+  inputs["views"].buffer = BufferShape{3, 144, "LightView", "lib/light_view.glsl"};
+  inputs["list"].buffer = BufferShape{100, 4, "uint"};
+  Declaration d({}, {}, inputs);
+  d.input_buffer("views", Access::uniform, "read as a block");
+  d.input_buffer("list", Access::storage_read, "read as a buffer");
+  d.output_buffer("written", Access::storage_write, {7, 4, "uint"}, "has no number that a reader needs");
+  const std::string text = preamble(d, {});
+  expect_contains(text,
+                  "#define VIEWS_COUNT 3\n#include \"lib/light_view.glsl\"\n"
+                  "layout(set = 1, binding = 0, std140) uniform views_block { LightView views[3]; };");
+  expect_contains(text, "#define LIST_COUNT 100\n");
+  EXPECT_EQ(text.find("WRITTEN_COUNT"), std::string::npos);
 }
 
 TEST(Preamble, without_ports_and_parameters_tells_the_setting_alone) {
-  const Declaration d({{64, 32}, 2, 7}, {}, {});
-  EXPECT_EQ(preamble(d, {}), "#define LIGHT_COUNT 2\n#define FACE_COUNT 7\n");
+  const Declaration d({{64, 32}, 2}, {}, {});
+  EXPECT_EQ(preamble(d, {}), "#define LIGHT_COUNT 2\n");
   EXPECT_TRUE(parameter_block(d.params()).empty());
   EXPECT_TRUE(parameter_defines(d.params()).empty());
 }

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "engine/light/light_face.h"
 #include "engine/light/light_fit.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
 #include "engine/truth/reference.h"
 #include "tests/engine/scene/gltf_draft.h"
@@ -268,7 +268,7 @@ TEST(LightFit, FollowsTheScene) {
     const LightFit fit(scene, 32, 1);
     for (const double height : {0.0, 2.0, 5.5}) {
       scene.instances[1].world_from_object[3].y += height;
-      const auto quick = fit.faces(scene), whole = light_faces(scene, 32, 1);
+      const auto quick = fit.views(scene), whole = light_views(scene, 32, 1);
       ASSERT_EQ(quick.size(), whole.size());
       for (size_t i = 0; i < quick.size(); ++i) {
         EXPECT_EQ(quick[i].near, whole[i].near);

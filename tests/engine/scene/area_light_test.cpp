@@ -255,6 +255,11 @@ TEST(LightScale, ScalesEveryAreaAndNothingElse) {
   EXPECT_EQ(twice.lights[0].intensity, scene.lights[0].intensity);
   EXPECT_EQ(*with_light_scale(scene, 1).lights[0].area, *scene.lights[0].area);
   for (const Light& light : with_light_scale(scene, 0).lights) EXPECT_FALSE(light.area);
+  // Of the sun its penumbrae's widths, which go with the tangent of half its diameter.
+  scene.lights[2].type = LightType::directional;
+  scene.lights[2].area = angular_disc(0.01);
+  EXPECT_NEAR(std::tan(0.5 * angular_diameter(*with_light_scale(scene, 30).lights[2].area)),
+              30 * std::tan(0.005), 1e-15);
   EXPECT_THROW(with_light_scale(scene, -1), Error);
   EXPECT_THROW(with_light_scale(scene, std::nan("")), Error);
   EXPECT_THROW(with_light_scale(scene, 1e308), Error);

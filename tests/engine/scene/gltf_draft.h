@@ -68,6 +68,27 @@ struct Draft {
       {"buffers", {{{"byteLength", 60}}}}};
   std::string data = raw(square) + raw(square_indices);
   std::string bytes() const { return glb(document, data); }
+
+  // A view of more bytes; its index.
+  size_t add_view(const std::string& more) {
+    data.resize((data.size() + 3) / 4 * 4, '\0');
+    document["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", data.size()}, {"byteLength", more.size()}});
+    data += more;
+    document["buffers"][0]["byteLength"] = data.size();
+    return document["bufferViews"].size() - 1;
+  }
+
+  // An accessor to floats of its own; its index.
+  size_t add_floats(const std::vector<float>& values, const std::string& type, size_t components) {
+    const size_t view = add_view(raw(values));
+    document["accessors"].push_back({{"bufferView", view},
+                                     {"componentType", 5126},
+                                     {"count", values.size() / components},
+                                     {"type", type}});
+    return document["accessors"].size() - 1;
+  }
+  nlohmann::json& primitive() { return document["meshes"][0]["primitives"][0]; }
 };
 
 inline Scene load(const Draft& draft) {

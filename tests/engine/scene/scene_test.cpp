@@ -1,6 +1,7 @@
+// Loading scenes: what is read, and every kind of broken file.
 #include "engine/scene/scene.h"
 #include "engine/base/resource_root.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "engine/light/scene_facts.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +95,8 @@ TEST(SceneLoad, BadInputNamesFileAndPlace) {
       {R"([{"op":"replace","path":"/buffers/0/byteLength","value":64000}])", {"byteLength"}},
       {R"([{"op":"replace","path":"/buffers/0/byteLength","value":0}])",
        {"0 bytes", "/buffers/0/byteLength"}},
-      {R"([{"op":"add","path":"/buffers/0/uri","value":"gone.bin"}])", {"not a readable"}},
+      {R"([{"op":"add","path":"/buffers/0/uri","value":"gone.bin"}])",
+       {"'gone.bin'", "no such file", "/buffers/0/uri"}},
       {R"([{"op":"replace","path":"/nodes/0/mesh","value":3}])", {"no mesh 3", "/nodes/0/mesh"}},
       {R"([{"op":"remove","path":"/nodes/0/mesh"}])", {"no triangles"}},
       {R"([{"op":"add","path":"/nodes/0/children","value":[0]}])", {"not a tree", "/nodes/0"}},
@@ -109,8 +111,9 @@ TEST(SceneLoad, BadInputNamesFileAndPlace) {
        {"no material 1", "/meshes/0/primitives/0/material"}},
       {R"([{"op":"add","path":"/meshes/0/primitives/0/attributes/NORMAL","value":1}])",
        {"/attributes/NORMAL"}},
-      {R"([{"op":"add","path":"/extensionsRequired","value":["KHR_draco_mesh_compression"]}])",
-       {"KHR_draco_mesh_compression", "/extensionsRequired/0"}},
+      {R"([{"op":"add","path":"/extensionsRequired","value":["EXT_unheard_of"]}])",
+       {"EXT_unheard_of", "/extensionsRequired/0"}},
+      {R"([{"op":"add","path":"/asset/minVersion","value":"2.1"}])", {"2.1", "/asset/minVersion"}},
       {R"([{"op":"add","path":"/nodes/0/camera","value":0}])", {"no camera 0", "/nodes/0/camera"}},
       {R"([{"op":"add","path":"/nodes/0/extensions","value":{"KHR_lights_punctual":{"light":0}}}])",
        {"no light 0"}},
@@ -262,7 +265,7 @@ TEST(SceneLoad, CamerasAndLights) {
               1e-12);  // the scene's, for the first spot
   EXPECT_EQ(scene.lights[2].type, LightType::directional);
   EXPECT_FALSE(scene.lights[2].area.has_value());
-  EXPECT_TRUE(warns(scene, "/nodes/5/extras/area_light: only spot lights"));
+  EXPECT_TRUE(warns(scene, "/nodes/5/extras/area_light: a directional light needs an angular_diameter"));
   EXPECT_LT(scene.lights[3].map_fov, 170.0 / 180 * 3.14159265358979);
 }
 
@@ -336,7 +339,7 @@ TEST(SceneLoad, MutatedFilesNeverCrash) {
   const auto attempt = [&](const std::string& bytes) {
     try {
       const Scene scene = load_scene(folder.write("fuzz.glb", bytes));
-      for (const LightFace& face : light_faces(scene, 256, 4)) EXPECT_GT(face.near, 0.0);
+      for (const LightView& face : light_views(scene, 256, 4)) EXPECT_GT(face.near, 0.0);
       scene_facts(scene, scene.cameras[0], 1.0);
       ++loaded;
     } catch (const Error&) {

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
+#include <utility>
 
 #include "engine/scene/scene.h"
 
@@ -56,6 +57,31 @@ inline Mesh sphere(float radius, int rings, int segments) {
   return mesh;
 }
 
+// A cube of half side `half` about the origin; its faces look outwards or inwards.
+inline Mesh cube(float half, bool outwards = true) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-1.0f, 1.0f}) {
+      const auto first = static_cast<uint32_t>(mesh.positions.size());
+      for (int i = 0; i < 4; ++i) {
+        glm::vec3 p(0), n(0);
+        p[axis] = side;
+        p[(axis + 1) % 3] = i == 1 || i == 2 ? side : -side;
+        p[(axis + 2) % 3] = i >= 2 ? 1.0f : -1.0f;
+        n[axis] = outwards ? side : -side;
+        mesh.positions.push_back(half * p);
+        mesh.normals.push_back(n);
+        mesh.uvs.emplace_back(0);
+      }
+      for (const uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + i);
+    }
+  if (!outwards)
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) std::swap(mesh.indices[i], mesh.indices[i + 1]);
+  mesh.watertight = true;
+  finish(mesh);
+  return mesh;
+}
+
 inline void add(Scene& scene, Mesh mesh, const glm::dvec3& at, Material material = {}) {
   mesh.material = static_cast<uint32_t>(scene.materials.size());
   scene.materials.push_back(std::move(material));
@@ -71,6 +97,11 @@ inline Camera camera(const glm::dvec3& eye, const glm::dvec3& target) {
   Camera camera;
   camera.world_from_camera = frame(eye, target, {0, 1, 0});
   return camera;
+}
+
+inline const char* name_of(LightType type) {
+  const char* names[] = {"spot", "point", "directional"};
+  return names[int(type)];
 }
 
 inline Light light(LightType type, const glm::dvec3& at, const glm::dvec3& target = {0, 0, 0}) {

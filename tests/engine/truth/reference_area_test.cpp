@@ -98,9 +98,8 @@ TEST(ReferenceArea, DiscBehindAnEdgeIsACircularSegment) {
 
 // Through the point and the edge goes a plane; it makes the angle e with the axis to the sphere's centre, and
 // cuts the tangent cone's round cross-section (half angle a, sin a = r / d) at tan e / tan a of its radius.
-TEST(ReferenceArea, SphereBehindAnEdgeIsASegmentOfItsTangentCone) {
-  const double radius = 0.9;
-  expect_close(half_plane({Shape::sphere, 2 * radius, 2 * radius, {}, {}}), [&](const glm::dvec3& p) {
+Truth sphere_behind_edge(double radius) {
+  return [=](const glm::dvec3& p) {
     const glm::dvec3 to_centre = light_place - p, to_edge(-p.x, blocker_height, 0);
     const glm::dvec3 covered =
         glm::normalize(glm::cross(glm::dvec3(0, 0, -1), to_edge));  // towards -x ... +x
@@ -108,6 +107,92 @@ TEST(ReferenceArea, SphereBehindAnEdgeIsASegmentOfItsTangentCone) {
     const double d = glm::length(to_centre), sine = glm::dot(open, to_centre) / d;
     const double e = std::asin(sine), a = std::asin(radius / d);
     return segment(-std::tan(e) / std::tan(a));
+  };
+}
+
+TEST(ReferenceArea, SphereBehindAnEdgeIsASegmentOfItsTangentCone) {
+  const double radius = 0.9;
+  expect_close(half_plane({Shape::sphere, 2 * radius, 2 * radius, {}, {}}), sphere_behind_edge(radius));
+}
+
+TEST(ReferenceArea, ASphereAroundAPointLightIsThatOfASpot) {
+  const double radius = 0.9;
+  Scene scene = half_plane({Shape::sphere, 2 * radius, 2 * radius, {}, {}});
+  scene.lights[0].type = LightType::point;
+  expect_close(scene, sphere_behind_edge(radius));
+}
+
+constexpr double degree = std::numbers::pi / 180;
+
+// `towards`: from the ground to the light.
+Scene half_plane_under_sun(double diameter, const glm::dvec3& towards) {
+  Scene scene = half_plane(angular_disc(diameter));
+  const AreaLight area = *scene.lights[0].area;
+  scene.lights[0] = light(LightType::directional, towards);
+  scene.lights[0].area = area;
+  return scene;
+}
+
+// Directions d + s to the light, d its unit axis, s in a disc of radius t = tan(a / 2) across it: from a
+// ground point p the edge is passed where p.x (d.y + s.y) + h (d.x + s.x) > 0, a half-plane in s.
+Truth sun_behind_edge(double diameter, const glm::dvec3& towards) {
+  return [=](const glm::dvec3& p) {
+    const glm::dvec3 d = glm::normalize(towards), n(blocker_height, p.x, 0);
+    const glm::dvec3 across = n - glm::dot(n, d) * d;
+    return segment(-glm::dot(n, d) / (glm::length(across) * std::tan(0.5 * diameter)));
+  };
+}
+
+TEST(ReferenceArea, SunBehindAnEdgeIsASegmentOfItsDisc) {
+  for (const glm::dvec3& towards : {glm::dvec3(0, 1, 0), glm::dvec3(0.5, 2, -0.7)})
+    expect_close(half_plane_under_sun(30 * degree, towards), sun_behind_edge(30 * degree, towards));
+}
+
+// w_p = 2 tan(a / 2) (z_p - z_b), wherever the receiver is; and far from the world's origin.
+TEST(ReferenceArea, PenumbraOfTheSunIsAsWideAsItsAngle) {
+  for (const double diameter : {0.53 * degree, 20 * degree}) {
+    Scene scene = half_plane_under_sun(diameter, {0, 1, 0});
+    const double width = 2 * std::tan(0.5 * diameter) * blocker_height;
+    // The view is three penumbrae wide, seen through the gap under the blocker.
+    scene.cameras[0] = camera({0, 1.5, 1e-3}, {0, 0, 0});
+    scene.cameras[0].fov_y = 2 * std::atan(1.5 * width / 1.5);
+    scene = moved(scene, {1e5, 0, 0});
+    ReferenceSettings settings;
+    settings.width = 121, settings.height = 121, settings.samples = 256;
+    const Reference r = ReferenceTracer(scene).trace(settings);
+    double lowest = 1e300, highest = -1e300;
+    for (size_t i = 0; i < r.depth.size(); ++i) {
+      const float v = r.visibility[0][i];
+      if (v == 0 || v == 1) continue;
+      lowest = std::min(lowest, double(r.position[i].x)),
+      highest = std::max(highest, double(r.position[i].x));
+    }
+    const double pixel = 3 * width / 121;
+    EXPECT_NEAR(highest - lowest, width, 4 * pixel);  // near its ends a disc's share is below a sample's
+    EXPECT_NEAR(highest + lowest, 0, 2 * pixel);
+  }
+}
+
+// Of a disc of radius r about c the share outside of the square [-1, 1] x [-1, 1], by chords.
+double outside_square(const glm::dvec2& c, double r) {
+  constexpr int steps = 4000;
+  double inside = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double x = r * (2 * (i + 0.5) / steps - 1), half = std::sqrt(r * r - x * x);
+    if (std::abs(c.x + x) > blocker_half) continue;
+    const double low = std::max(c.y - half, -blocker_half), high = std::min(c.y + half, blocker_half);
+    inside += std::max(0.0, high - low) * 2 * r / steps;
+  }
+  return 1 - inside / (std::numbers::pi * r * r);
+}
+
+// The square seen from a ground point is a square on the light's disc at the blocker's height.
+TEST(ReferenceArea, ASquareUnderTheSunHidesASquareOfItsDisc) {
+  const double diameter = 25 * degree;
+  Scene scene = square_over_plane(light(LightType::directional, {0, 1, 0}));
+  scene.lights[0].area = angular_disc(diameter);
+  expect_close(scene, [&](const glm::dvec3& p) {
+    return outside_square({p.x, p.z}, blocker_height * std::tan(0.5 * diameter));
   });
 }
 
@@ -197,7 +282,7 @@ TEST(ReferenceArea, BrokenOutlinesAreErrors) {
   EXPECT_THROW(ReferenceTracer(half_plane(area)).trace(settings), Error);
 }
 
-TEST(ReferenceArea, OnlySpotLightsHaveAnArea) {
+TEST(ReferenceArea, ShapesThatATypeCannotHaveDoNotCount) {
   Scene scene = half_plane({Shape::disc, 1, 1, {}, {}});
   scene.lights[0].type = LightType::point;
   ReferenceSettings settings;
@@ -236,6 +321,34 @@ TEST(ReferenceArea, FactsKnowTheShapes) {
   EXPECT_EQ(facts({Shape::disc, 1.5, 1.5, {}, {}}).light_size[0], 1.5);
   EXPECT_EQ(facts(polygon_light({{0, 0}, {0.25, 0}, {0, 1}})).light_size[0], 2.0);
   EXPECT_EQ(facts({Shape::sphere, 1, 1, {}, {}}).shadowless[0], "");
+}
+
+// A shadow that misses the receiver under a point, and whose penumbra does not.
+TEST(ReferenceArea, FactsKnowHowFarSizesReach) {
+  const auto facts = [](Light l, const std::optional<AreaLight>& area) {
+    Scene scene;
+    add(scene, square(1), {0, 0, 0});
+    add(scene, square(1), {2.5, blocker_height, 0});
+    scene.cameras.push_back(camera({-4, 3, 0}, {0, 0, 0}));
+    scene.cameras[0].fov_y = 0.5;
+    l.area = area;
+    scene.lights.push_back(l);
+    return scene_facts(scene, scene.cameras[0], 1, 100);
+  };
+  const Light sun = light(LightType::directional, {0, 1, 0}), lamp = light(LightType::point, {0, 6, 0});
+  EXPECT_EQ(facts(sun, {}).shadowless[0], SceneFacts::no_caster);
+  EXPECT_EQ(facts(sun, {}).penumbra[0], 0);
+  EXPECT_EQ(facts(sun, {}).light_size[0], 0);
+  EXPECT_EQ(facts(sun, angular_disc(5 * degree)).shadowless[0], SceneFacts::no_caster);
+  EXPECT_EQ(facts(sun, angular_disc(80 * degree)).shadowless[0], "");
+  EXPECT_FALSE(facts(sun, angular_disc(5 * degree)).shines_as_point(0));
+  EXPECT_TRUE(facts(sun, angular_disc(1e-6)).shines_as_point(0));
+  EXPECT_NEAR(facts(sun, angular_disc(5 * degree)).light_size[0], 2 * std::tan(2.5 * degree), 1e-12);
+  const AreaLight bulb{Shape::sphere, 1, 1, {}, {}};
+  EXPECT_EQ(facts(lamp, {}).shadowless[0], SceneFacts::no_caster);
+  EXPECT_EQ(facts(lamp, AreaLight{Shape::sphere, 6, 6, {}, {}}).shadowless[0], "");
+  EXPECT_FALSE(facts(lamp, bulb).shines_as_point(0));
+  EXPECT_EQ(facts(lamp, bulb).light_size[0], 1);
 }
 
 // Acne and leaks are counted away from edges: of every point on the light's border.

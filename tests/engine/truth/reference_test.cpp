@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "engine/base/error.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "tests/engine/truth/analytic_scenes.h"
 
 namespace gnomon {
@@ -298,7 +298,7 @@ TEST(Reference, MirroredInstancesKeepTheirFront) {
 Texture alpha_texture(uint32_t w, uint32_t h, const std::vector<uint8_t>& alpha) {
   Texture t;
   t.width = w, t.height = h;
-  t.repeat_u = t.repeat_v = false;
+  t.wrap_u = t.wrap_v = Wrap::clamp;
   for (const uint8_t a : alpha) t.rgba.insert(t.rgba.end(), {255, 188, 0, a});
   return t;
 }
@@ -454,7 +454,7 @@ TEST(AwayFromEdges, KnownDistancesToAStraightEdge) {
 // One texel of an orthographic map of n texels is the extent over n: twice the texels, half the distance.
 TEST(AwayFromEdges, DirectionalLight) {
   const Scene scene = square_over_plane(light(LightType::directional, {0, 1, 0}));
-  const LightFace face = light_faces(scene, 256, 0).at(0);
+  const LightView face = light_views(scene, 256, 0).at(0);
   const double texel = 2 * face.half_width / 256;
   const Reference r = trace(scene);
   std::vector<uint32_t> pixels;

@@ -15,16 +15,16 @@ namespace {
 
 using Decide = std::function<bool(const LightQuads::Quad&)>;
 
-// Answers until there are no questions; the number of turns.
+// Answers until there are no questions; the number of iterations.
 uint32_t run(LightQuads& quads, const Decide& divide) {
-  uint32_t turns = 0;
+  uint32_t iterations = 0;
   while (!quads.questions().empty()) {
     std::vector<bool> answers;
     for (const LightQuads::Quad& quad : quads.questions()) answers.push_back(divide(quad));
     quads.answer(answers);
-    ++turns;
+    ++iterations;
   }
-  return turns;
+  return iterations;
 }
 
 bool always(const LightQuads::Quad&) { return true; }

@@ -1,3 +1,4 @@
+// Which samples' maps are kept, moved and rendered again.
 #include "passes/area/map_cache.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +36,7 @@ TEST(MapCache, KnownSamplesKeepTheirLayers) {
   EXPECT_EQ(missing(first), 3u);
   EXPECT_EQ(missing(again), 2u);
   EXPECT_EQ(again.layers[0], first.layers[1]);
-  EXPECT_EQ(missing(cache.place(1, places(0, 1))), 1u) << "another face";
+  EXPECT_EQ(missing(cache.place(1, places(0, 1))), 1u) << "another view";
 }
 
 TEST(MapCache, WhatFindsNoPlaceGoesToScratchAndIsRenderedAgain) {

@@ -1,3 +1,4 @@
+// Distance transforms on the CPU, in 64-bit integers.
 #include <algorithm>
 #include <cmath>
 #include <random>

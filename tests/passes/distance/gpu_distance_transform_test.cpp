@@ -9,6 +9,8 @@
 #include "engine/base/error.h"
 #include "engine/graph/graph.h"
 #include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "engine/render/renderer.h"
 #include "tests/engine/truth/analytic_scenes.h"
 #include "tests/passes/distance/gpu_distance_oracle.h"
 #include "tests/passes/silent_test.h"
@@ -243,7 +245,8 @@ TEST_F(DistanceTransform, ListsAllTilesWhenUnbounded) {
 Scene shadow_scene() { return analytic::square_over_plane(analytic::light(LightType::spot, {1.5, 7, 1})); }
 
 const char* const kDepthGraph = R"({ "schema": 1, "name": "depth", "passes": [
-  { "id": "gbuffer", "type": "gbuffer" }, { "id": "map", "type": "shadow_map", "params": { "size": 256 } },
+  { "id": "gbuffer", "type": "gbuffer" }, { "id": "views", "type": "light_views" },
+  { "id": "map", "type": "shadow_map", "in": { "views": "views.views" }, "params": { "size": 256 } },
   { "id": "hard", "type": "shadow_test",
     "in": { "depth": "gbuffer.depth", "geometric": "gbuffer.geometric", "shadow_map": "map.depth" } },
   { "id": "edt", "type": "distance_transform", "params": { "sites": "silhouette", PARAMS },

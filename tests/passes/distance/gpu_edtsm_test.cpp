@@ -7,6 +7,7 @@
 
 #include "engine/graph/graph.h"
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
@@ -87,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(All, StraightEdge,
                          testing::Values(View{5, 60, 0, 0}, View{10, 60, 0, 0}, View{14, 60, 0, 0},
                                          View{8, 60, 0, 30}, View{8, 60, 40, 75}, View{8, 35, 0, 0},
                                          View{8, 35, 40, 45}, View{8, 35, 70, 10}, View{8, 20, 45, 60},
-                                         View{5, 25, 55, 20}));
+                                         View{5, 25, 55, 20}),
+                         test::ParameterName());
 
 TEST_P(StraightEdge, HasTheWorldSpaceWidthItWasGiven) {
   const View v = GetParam();

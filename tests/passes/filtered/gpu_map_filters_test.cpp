@@ -5,8 +5,9 @@
 #include <random>
 
 #include "engine/graph/graph.h"
-#include "engine/light/light_face.h"
+#include "engine/light/light_view.h"
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 #include "tests/shaders/gpu_revectorization_helper.h"
 
@@ -57,7 +58,8 @@ std::shared_ptr<const Image> depth_of(const VisibilityMap& map) {
 
 std::vector<float> filtered(const VisibilityMap& map, const std::string& type, const std::string& params) {
   const std::string graph = R"({ "schema": 1, "name": "test", "passes": [
-    { "id": "gbuffer", "type": "gbuffer" }, { "id": "map", "type": "image_source" },
+    { "id": "gbuffer", "type": "gbuffer" }, { "id": "views", "type": "light_views" },
+    { "id": "map", "type": "image_source", "in": { "views": "views.views" }, "params": { "holds": "depth" } },
     { "id": "filter", "type": ")" +
                             type + R"(", "params": {)" + params + R"(},
       "in": { "depth": "gbuffer.depth", "geometric": "gbuffer.geometric", "shadow_map": "map.value" } } ],
@@ -79,7 +81,7 @@ std::vector<Place> places() {
     r.width = r.height = kSize;
     return ReferenceTracer(floor_scene()).trace(r);
   }();
-  const LightFace face = light_faces(floor_scene(), kSize, 0).front();
+  const LightView face = light_views(floor_scene(), kSize, 0).front();
   const glm::dvec3 eye(floor_scene().cameras[0].world_from_camera[3]);
   std::vector<Place> all;
   for (uint32_t i = 0; i < reference.depth.size(); ++i) {
@@ -161,13 +163,18 @@ struct RpcfCase {
   double shadow;
   int grain, kernel, max_size;
 };
+void PrintTo(const RpcfCase& c, std::ostream* out) {
+  *out << "kernel " << c.kernel << " size " << c.max_size << " grain " << c.grain << " shadow "
+       << 100 * c.shadow << " percent";
+}
 class RevectorizationBasedFilter : public testing::TestWithParam<RpcfCase> {};
 INSTANTIATE_TEST_SUITE_P(All, RevectorizationBasedFilter,
                          testing::Values(RpcfCase{0.5, 1, 1, 16}, RpcfCase{0.3, 3, 1, 255},
                                          RpcfCase{0.2, 1, 3, 16}, RpcfCase{0.5, 7, 7, 16},
                                          RpcfCase{0.4, 4, 7, 3}, RpcfCase{0.3, 9, 7, 255},
                                          RpcfCase{0.5, 5, 15, 1}, RpcfCase{0.1, 11, 29, 16},
-                                         RpcfCase{0.6, 13, 63, 31}));
+                                         RpcfCase{0.6, 13, 63, 31}),
+                         test::ParameterName());
 
 std::string rpcf_params(const RpcfCase& c, bool reuse, bool list) {
   return "\"kernel\": " + std::to_string(c.kernel) + ", \"max_size\": " + std::to_string(c.max_size) +

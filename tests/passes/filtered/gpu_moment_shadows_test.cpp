@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
@@ -69,11 +70,20 @@ Values with(Values set, const Values& more) {
 // ---------------------------------------------------------------------------------
 // against shadow mapping
 
-class EveryLight : public testing::TestWithParam<std::tuple<const char*, LightType>> {};
-INSTANTIATE_TEST_SUITE_P(All, EveryLight,
-                         testing::Combine(testing::ValuesIn(kGraphs),
-                                          testing::Values(LightType::spot, LightType::directional,
-                                                          LightType::point)));
+struct LitGraph {
+  const char* graph;
+  LightType type;
+};
+void PrintTo(const LitGraph& c, std::ostream* out) { *out << c.graph << ' ' << analytic::name_of(c.type); }
+std::vector<LitGraph> lit_graphs() {
+  std::vector<LitGraph> all;
+  for (const char* graph : kGraphs)
+    for (const LightType type : {LightType::spot, LightType::directional, LightType::point})
+      all.push_back({graph, type});
+  return all;
+}
+class EveryLight : public testing::TestWithParam<LitGraph> {};
+INSTANTIATE_TEST_SUITE_P(All, EveryLight, testing::ValuesIn(lit_graphs()), test::ParameterName());
 
 // With a kernel of one texel only the bilinear reading filters: away from edges
 // (here: where the 7x7 pixels around agree) a pixel is what shadow mapping

@@ -8,6 +8,7 @@
 #include "engine/base/resource_root.h"
 #include "engine/graph/graph.h"
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
@@ -16,6 +17,7 @@ namespace {
 using namespace hard_shadow;
 using analytic::add;
 using analytic::light;
+using analytic::name_of;
 using analytic::square;
 namespace fs = std::filesystem;
 
@@ -94,6 +96,9 @@ struct Technique {
   const char* depth;  // encoding of the shadow map; null: it has none
   double band;        // bound on wrong / band; of exact techniques on wrong / counted
 };
+void PrintTo(const Technique& t, std::ostream* out) {
+  *out << t.graph << (t.depth ? std::string(" ") + t.depth : "");
+}
 constexpr Technique kTechniques[] = {
     {"shadow_mapping", "perspective", 0.25},
     {"shadow_mapping", "linear", 0.25},
@@ -110,9 +115,9 @@ struct Case {
   LightType type;
   bool reversed_z;
 };
-const char* name_of(LightType type) {
-  const char* names[] = {"spot", "point", "directional"};
-  return names[int(type)];
+void PrintTo(const Case& c, std::ostream* out) {
+  PrintTo(c.technique, out);
+  *out << ' ' << name_of(c.type) << (c.reversed_z ? " reversed" : " standard");
 }
 std::vector<Case> cases() {
   std::vector<Case> all;
@@ -153,11 +158,7 @@ Scene scene_for(const Technique& t, const std::vector<Light>& lights) {
 }
 
 class HardShadows : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(All, HardShadows, testing::ValuesIn(cases()), [](const auto& info) {
-  const Case& c = info.param;
-  return std::string(c.technique.graph) + (c.technique.depth ? std::string("_") + c.technique.depth : "") +
-         "_" + name_of(c.type) + (c.reversed_z ? "_reversed" : "_standard");
-});
+INSTANTIATE_TEST_SUITE_P(All, HardShadows, testing::ValuesIn(cases()), test::ParameterName());
 
 TEST_P(HardShadows, AgreeWithTheReference) {
   const Case& c = GetParam();
@@ -169,9 +170,7 @@ TEST_P(HardShadows, AgreeWithTheReference) {
 // ----------------------------------------------------------------------------------------- several lights
 
 class HardTechnique : public testing::TestWithParam<Technique> {};
-INSTANTIATE_TEST_SUITE_P(All, HardTechnique, testing::ValuesIn(kTechniques), [](const auto& info) {
-  return std::string(info.param.graph) + (info.param.depth ? std::string("_") + info.param.depth : "");
-});
+INSTANTIATE_TEST_SUITE_P(All, HardTechnique, testing::ValuesIn(kTechniques), test::ParameterName());
 
 // A layer a light, each with its own shadows: faces are counted past point lights' six.
 TEST_P(HardTechnique, SeveralLights) {
@@ -218,6 +217,7 @@ struct BiasCase {
   const char* graph;
   const char* bias;
 };
+void PrintTo(const BiasCase& c, std::ostream* out) { *out << c.graph << ' ' << c.bias; }
 std::vector<BiasCase> bias_cases() {
   std::vector<BiasCase> all;
   for (const char* graph : {"shadow_mapping", "rbsm_conservative", "rbsm_nonconservative"})
@@ -227,9 +227,7 @@ std::vector<BiasCase> bias_cases() {
   return all;
 }
 class BiasMethod : public testing::TestWithParam<BiasCase> {};
-INSTANTIATE_TEST_SUITE_P(All, BiasMethod, testing::ValuesIn(bias_cases()), [](const auto& info) {
-  return std::string(info.param.graph) + "_" + info.param.bias;
-});
+INSTANTIATE_TEST_SUITE_P(All, BiasMethod, testing::ValuesIn(bias_cases()), test::ParameterName());
 
 // No acne on the analytic scenes by default, with each light type; without any bias there must be, or this
 // test would not see it.

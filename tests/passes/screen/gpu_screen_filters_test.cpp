@@ -6,6 +6,7 @@
 
 #include "engine/graph/graph.h"
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
@@ -63,6 +64,7 @@ struct Filter {
   double width = 15, reference_depth = 9;  // pixels; world units
   double depth_tolerance = 1e-3, range_tolerance = 0.01;
 };
+void PrintTo(const Filter& f, std::ostream* out) { *out << f.type << ' ' << f.width; }
 
 Plane on_device(const Filter& f, const Plane& source) {
   Image image(kWidth, kHeight, {"Y"});
@@ -161,7 +163,8 @@ INSTANTIATE_TEST_SUITE_P(All, ScreenFilter,
                                          Filter{"mean_filter", 15}, Filter{"mean_filter", 31},
                                          Filter{"mean_filter", 63, 20}, Filter{"bilateral_filter", 1},
                                          Filter{"bilateral_filter", 7}, Filter{"bilateral_filter", 15},
-                                         Filter{"bilateral_filter", 63, 20}));
+                                         Filter{"bilateral_filter", 63, 20}),
+                         test::ParameterName());
 
 TEST_P(ScreenFilter, IsItsDefinition) {
   const Filter f = GetParam();

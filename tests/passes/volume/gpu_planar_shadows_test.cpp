@@ -1,7 +1,9 @@
+// Planar shadows against closed forms and the ray tracer.
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "passes/volume/receiver_planes.h"
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
@@ -37,9 +39,8 @@ struct Case {
   LightType type;
   bool reversed_z;
 };
-std::string name_of(const testing::TestParamInfo<Case>& info) {
-  const char* types[] = {"spot", "point", "directional"};
-  return std::string(types[int(info.param.type)]) + (info.param.reversed_z ? "_reversed" : "_standard");
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << analytic::name_of(c.type) << (c.reversed_z ? " reversed" : " standard");
 }
 class PlanarShadowsCase : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(All, PlanarShadowsCase,
@@ -47,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(All, PlanarShadowsCase,
                                          Case{LightType::point, true}, Case{LightType::point, false},
                                          Case{LightType::directional, true},
                                          Case{LightType::directional, false}),
-                         name_of);
+                         test::ParameterName());
 
 // The shadow of the square at height h on the plane y = 0 is the square itself, moved and scaled from the
 // light.

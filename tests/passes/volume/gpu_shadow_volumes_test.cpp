@@ -1,6 +1,8 @@
+// Shadow volumes against the ray tracer: open, closed and folded meshes, the camera inside.
 #include <random>
 
 #include "tests/engine/truth/analytic_scenes.h"
+#include "tests/parameter_name.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
 namespace gnomon {
@@ -76,9 +78,8 @@ struct Case {
   LightType type;
   bool reversed_z;
 };
-std::string name_of(const testing::TestParamInfo<Case>& info) {
-  const char* types[] = {"spot", "point", "directional"};
-  return std::string(types[int(info.param.type)]) + (info.param.reversed_z ? "_reversed" : "_standard");
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << analytic::name_of(c.type) << (c.reversed_z ? " reversed" : " standard");
 }
 
 class ShadowVolumesCase : public testing::TestWithParam<Case> {};
@@ -87,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShadowVolumesCase,
                                          Case{LightType::point, true}, Case{LightType::point, false},
                                          Case{LightType::directional, true},
                                          Case{LightType::directional, false}),
-                         name_of);
+                         test::ParameterName());
 
 // Shares of the counted pixels: a handful of those that a true edge passes within rounding of their centre.
 constexpr double kBound = 5e-4;
@@ -246,6 +247,43 @@ TEST(ShadowVolumes, SingleSidedSheetSeenThrough) {
     scene.cameras.push_back(analytic::camera({0.5, 9, 1}, {0, 0, 0}));
     scene.lights.push_back(light(LightType::spot, {2, 5, 1}));
     expect_error(scene, settings(true), kBound, up ? "front seen" : "back seen");
+  }
+}
+
+// What a closed single-sided mesh hides from nobody: a room whose faces look inwards, seen through its culled
+// wall; and a shell with the camera in it. Lights without and within.
+TEST_P(ShadowVolumesCase, WhatIsSeenThroughCulledWalls) {
+  const glm::dvec3 without(3, 6.5, 2), within(0.5, 1.5, 0.7);
+  for (const bool room : {true, false})
+    for (const glm::dvec3& at : {without, within}) {
+      Scene scene;
+      add(scene, analytic::cube(3, !room), {0, 0, 0});
+      add(scene, analytic::cube(0.5), {0, -2, 0});
+      add(scene, square(20), {0, -4, 0});
+      scene.cameras.push_back(room ? analytic::camera({7, 6, 9}, {0, -1, 0})
+                                   : analytic::camera({2, 1, 2.2}, {0, -2.5, 0}));
+      scene.lights.push_back(light(GetParam().type, at, {0, -3, 0}));
+      const RenderSettings s = settings(GetParam().reversed_z);
+      const Misclassified e = compare(render("shadow_volumes", scene, s), trace(scene, s));
+      EXPECT_GT(e.counted, 1000u) << room;
+      EXPECT_LE(e.share(), kBound) << (room ? "room" : "shell") << (at == within ? ", light within: " : ": ")
+                                   << e.wrong << " of " << e.counted;
+    }
+}
+
+// The camera goes into a shell and out again.
+TEST(ShadowVolumes, TheCameraMovesIntoAShell) {
+  Scene scene;
+  add(scene, analytic::cube(3), {0, 0, 0});
+  add(scene, square(2), {0, -1, 0});
+  add(scene, square(20), {0, -4, 0});
+  scene.lights.push_back(light(LightType::spot, {1, 9, 2}, {0, -3, 0}));
+  for (const glm::dvec3 eye :
+       {glm::dvec3(0, 1, 2), glm::dvec3(0, 1, 2.95), glm::dvec3(0, 1, 3.05), glm::dvec3(0, 7, 8)}) {
+    scene.cameras = {analytic::camera(eye, {0, -2, 0})};
+    const RenderSettings s = settings(true);
+    const Misclassified e = compare(render("shadow_volumes", scene, s), trace(scene, s));
+    EXPECT_LE(e.share(), kBound) << eye.z << ": " << e.wrong << " of " << e.counted;
   }
 }
 

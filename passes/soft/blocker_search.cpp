@@ -1,0 +1,67 @@
+// The pass blocker_search: what hides some of each light from each camera pixel, found in the shadow map.
+#include <algorithm>
+
+#include "engine/graph/pass.h"
+#include "engine/light/scene_facts.h"
+#include "engine/render/context.h"
+#include "engine/render/environment.h"
+#include "passes/map/map_traits.h"
+#include "passes/map/receiver_ports.h"
+
+namespace gnomon {
+namespace {
+
+class BlockerSearch : public Pass {
+ public:
+  void declare(Declaration& d) const override {
+    d.summary(
+        "Searches the shadow map for what hides some of the light, and says how wide the penumbra is that it "
+        "throws.");
+    d.cite("Fernando 2005; Macedo 2018, ch. 2.5.1, eq. 5.1-5.2, and algorithm 5 (the pyramid)");
+    const ImageShape image = declare_receiver(d);
+    const bool exact =
+        d.choice(
+            "protocol", "exact", {"exact", "thesis"},
+            "exact: the region that the light's size asks for, shrunk to that of the nearest depth in it; "
+            "thesis: as many texels as there are taps, whatever the light (Macedo 2018, ch. 5.5.1)") ==
+        "exact";
+    const int64_t taps =
+        d.integer("taps", 9, 1, 64, "taps", "a side of the region; when it has fewer texels, each is one");
+    const std::string pyramid = "exact: min_max_pyramid of the shadow map";
+    if (exact)
+      d.input("pyramid", Access::sampled, true, pyramid);
+    else
+      d.optional_input("pyramid", Access::sampled, true, pyramid);
+    read_pyramid(d, "pyramid");
+    if (!exact) d.reads_around("shadow_map", uint32_t(taps / 2 + 1));
+    d.output(
+        "blocker", Access::storage_write, true, image,
+        "mean linear depth of what hides some of the light, from it, world units; 0: nothing does, or the "
+        "light has no size; a layer a light");
+    d.output(
+        "width", Access::storage_write, true, image,
+        "of the penumbra at the receiver, parallel to the light's larger side, world units; a layer a light");
+  }
+
+  Need need(const SceneFacts& facts, const Params&) const override {
+    if (std::any_of(facts.light_size.begin(), facts.light_size.end(), [](double size) { return size > 0; }))
+      return Need::run();
+    Need none = Need::constant("blocker", 0, "no light has a size");
+    none.constants.push_back({"width", {0, 0, 0, 0}});
+    return none;
+  }
+
+  void prepare(Environment& e) override {
+    search_.prepare(e, "soft/blocker_search.glsl", {}, {"blocker", "soft/blocker_search_none.glsl"});
+    report_bias(e);
+  }
+  void record(Context& c) override { search_.dispatch_all(c); }
+
+ private:
+  PerLight search_;
+};
+
+GNOMON_PASS("blocker_search", BlockerSearch);
+
+}  // namespace
+}  // namespace gnomon
