@@ -143,12 +143,14 @@ class FieldReader {
 
   template <class T>
   static void read(const nlohmann::json& json, T& value, const JsonPlace& place) {
-    if constexpr (std::is_same_v<T, std::optional<double>>) {
-      read(json, value.emplace(), place);  // null: there, and not finite
+    if constexpr (FieldKind<T>::optional) {
+      constexpr bool null_is_one = std::is_same_v<T, std::optional<double>>;  // there, and not finite
+      if (json.is_null() && !null_is_one)
+        value.reset();
+      else
+        read(json, value.emplace(), place);
     } else if (json.is_null()) {
-      if constexpr (FieldKind<T>::optional) value.reset();
-    } else if constexpr (FieldKind<T>::optional) {
-      read(json, value.emplace(), place);
+      return;
     } else if constexpr (FieldKind<T>::list) {
       if (!json.is_array()) fail_field("a list", place);
       value.clear();
