@@ -101,7 +101,7 @@ BenchResult measure(const Suite& suite, BenchOptions bench, const std::shared_pt
   double share = 0;
   bench.progress = [&](double now, const std::string& note) { progress.update(share = now, note); };
   const auto tracing = [&](double, const std::string& note) { progress.update(share, note); };
-  const BenchResult result =
+  BenchResult result =
       run_until_interrupted(suite, bench, device_stages(device, cache_folder(), tracing, bench.out));
   progress.done();
   return result;

@@ -157,7 +157,7 @@ void measure_error(const Image& visibility, const Graph& graph, const StabilityT
     edges.tracer = nullptr;
   else
     for (uint32_t i = 0; i < reference.lights; ++i) deep.push_back(deep_umbra(reference, i, edges));
-  const ErrorMetrics error = measure_visibility(visibility, reference, edges, deep).all;
+  const auto error = measure_visibility(visibility, reference, edges, deep).all;
   m.pixels = error.pixels;
   if (m.pixels == 0) return;
   m.rmse = error.rmse, m.misclassified = error.misclassified;

@@ -77,7 +77,7 @@ std::array<glm::dvec3, 8> box_corners(const Scene& scene, const Instance& instan
   const Bounds& box = scene.meshes[instance.mesh].bounds;
   glm::dmat4 placed = instance.world_from_object;
   placed[3] -= glm::dvec4(origin, 0.0);
-  std::array<glm::dvec3, 8> corners;
+  std::array<glm::dvec3, 8> corners{};
   for (int i = 0; i < 8; ++i) {
     const glm::dvec3 corner((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
                             (i & 4) != 0 ? box.max.z : box.min.z);

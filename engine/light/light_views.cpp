@@ -43,7 +43,7 @@ Frustum perspective_frustum(double half_width, double half_height, double neares
 
 // A triangle against 5 planes has at most 8 corners (Sutherland and Hodgman 1974).
 struct Polygon {
-  std::array<glm::dvec3, 10> corners;
+  std::array<glm::dvec3, 10> corners{};
   size_t count = 0;
   void add(const glm::dvec3& p) {
     if (count < corners.size()) corners[count++] = p;

@@ -37,7 +37,7 @@ class Substitution {
 
   std::optional<PortKey> find_output() const {
     for (uint32_t i = 0; i < graph_.nodes.size(); ++i)
-      if (const auto key = output_of(i)) return key;
+      if (auto key = output_of(i)) return key;
     return std::nullopt;
   }
 

@@ -112,7 +112,7 @@ class AnimationReader {
       const bool has = extension != channel.target_extensions.end() && extension->second.Has("pointer");
       const tinygltf::Value value = has ? extension->second.Get("pointer") : tinygltf::Value();
       const std::string pointer = value.IsString() ? value.Get<std::string>() : "";
-      const std::optional<Target> target = target_of(pointer);
+      std::optional<Target> target = target_of(pointer);
       if (!target) warn(at(place, "target"), "'" + pointer + "' is not animated; shadows can differ");
       return target;
     }

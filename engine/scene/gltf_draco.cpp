@@ -135,7 +135,7 @@ tinygltf::Primitive unpacked(GltfFile& gltf, const tinygltf::Primitive& primitiv
   for (const std::string& name : attributes.Keys()) {
     const auto found = result.attributes.find(name);
     if (found == result.attributes.end() || !problem.empty()) continue;
-    const tinygltf::Value id = attributes.Get(name);
+    const tinygltf::Value& id = attributes.Get(name);
     found->second =
         unpack_attribute(gltf, *mesh, found->second, id.IsInt() ? id.GetNumberAsInt() : -1, problem);
   }

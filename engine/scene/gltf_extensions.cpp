@@ -96,10 +96,10 @@ void check_extensions(const Json& document, const std::string& file, SceneWarnin
       if (!ignored && list == std::string("extensionsRequired"))
         fail("required extension " + in_quotes(name) + " is not known", file, place,
              "export the scene without it");
-      warnings.messages.push_back(
-          file + ": " + place + ": extension " + in_quotes(name) +
-          (ignored ? " is ignored: " + std::string(ignored->meaning)
-                   : " is not known and is ignored; what it leaves out can change shadows"));
+      const std::string what = ignored
+                                   ? std::string(" is ignored: ").append(ignored->meaning)
+                                   : " is not known and is ignored; what it leaves out can change shadows";
+      warnings.messages.push_back(to_string({"extension " + in_quotes(name) + what, file, place, {}}));
     }
   }
 }

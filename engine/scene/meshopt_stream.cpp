@@ -149,6 +149,7 @@ void decode_colors(std::span<unsigned char> elements) {
     std::memcpy(in, &elements[at], sizeof in);
     const int scale =
         (1 << std::bit_width(unsigned{in[3]})) - 1;  // of the K bits that alpha's highest bit tells
+    // NOLINTNEXTLINE(bugprone-signed-char-misuse): differences, which are signed
     const int y = in[0], co = static_cast<Signed>(in[1]), cg = static_cast<Signed>(in[2]);
     const int alpha = in[3] & (scale >> 1);
     const int rgba[4] = {y + co - cg, y + cg, y - co - cg, alpha << 1 | (alpha & 1)};

@@ -78,7 +78,7 @@ class AreaReader {
       if (std::find(keys.begin(), keys.end(), key) == keys.end())
         warn(key, "unknown key '" + key + "', ignored", did_you_mean(key, keys));
       else if (!means(key))
-        warn(key, name + " has no '" + key + "', ignored");
+        warn(key, std::string(name).append(" has no '").append(key).append("', ignored"));
     }
   }
 

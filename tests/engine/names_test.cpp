@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "engine/base/config.h"
+#include "engine/base/input_file.h"
 #include "engine/base/resource_root.h"
 #include "engine/graph/graph.h"
 #include "engine/graph/pass.h"
