@@ -115,7 +115,7 @@ TEST(EngineNames, NoneIsATechniques) {
   for (const auto& entry : fs::recursive_directory_iterator(resource_root() / "engine")) {
     const fs::path& file = entry.path();
     if (file.extension() != ".cpp" && file.extension() != ".h") continue;
-    for (const std::string& literal : strings_of(read_text(file))) {
+    for (const std::string& literal : strings_of(read_input_file(file))) {
       ++strings;
       const auto found = names.find(literal);
       if (found != names.end() && !is_own(file, literal))
