@@ -37,8 +37,11 @@ void OutputFolder::make(const fs::path& folder) {
 }
 
 void OutputFolder::remove_made() {
-  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
-    if (std::error_code in_use; !fs::remove(*folder, in_use)) return;
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
+    std::error_code in_use;
+    fs::remove(*folder, in_use);
+    if (in_use) return;
+  }
 }
 
 fs::path OutputFolder::file(const std::string& name) {

@@ -23,7 +23,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 std::string read_whole(const fs::path& file) {
-  return read_input_file(file, most_input_bytes, "gnomon bench SUITE --out DIR writes them");
+  if (std::error_code ignored; !fs::exists(file, ignored))
+    fail("cannot open the results", file.string(), {}, "gnomon bench SUITE --out DIR writes them");
+  return read_input_file(file);
 }
 
 // Everything up to the end of the last whole line.

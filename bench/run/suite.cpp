@@ -173,8 +173,9 @@ std::vector<double> all_light_scales(const Suite& suite) {
 }
 
 Suite load_suite(const fs::path& file) {
-  return parse_suite(read_input_file(file, most_input_bytes, "bench/suites holds some: gnomon bench hard"),
-                     file);
+  if (std::error_code ignored; !fs::exists(file, ignored))
+    fail("cannot open the suite", file.string(), {}, "bench/suites holds some: gnomon bench hard");
+  return parse_suite(read_input_file(file), file);
 }
 
 fs::path find_suite(const std::string& name_or_file) {

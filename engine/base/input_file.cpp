@@ -9,10 +9,10 @@ namespace gnomon {
 
 namespace fs = std::filesystem;
 
-void check_input_file(const fs::path& file, uint64_t most_bytes, const std::string& hint) {
+void check_input_file(const fs::path& file, uint64_t most_bytes) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) fail("no such file", file.string(), {}, hint);
+  if (!fs::exists(status)) fail("no such file", file.string());
   if (fs::is_directory(status)) fail("is a folder, not a file", file.string());
   if (!fs::is_regular_file(status)) fail("is a pipe or device, not a file", file.string());
   const uint64_t size = fs::file_size(file, error);
@@ -23,8 +23,8 @@ void check_input_file(const fs::path& file, uint64_t most_bytes, const std::stri
          file.string());
 }
 
-std::string read_input_file(const fs::path& file, uint64_t most_bytes, const std::string& hint) {
-  check_input_file(file, most_bytes, hint);
+std::string read_input_file(const fs::path& file, uint64_t most_bytes) {
+  check_input_file(file, most_bytes);
   std::error_code error;
   std::string text(fs::file_size(file, error), '\0');
   std::ifstream stream(file, std::ios::binary);

@@ -11,11 +11,9 @@ namespace gnomon {
 inline constexpr uint64_t most_input_bytes = uint64_t{1} << 30;
 
 // Error: it is not there, a folder, a pipe, socket or device (which may never end), or larger than
-// `most_bytes`. `hint` is for a file that is not there.
-void check_input_file(const std::filesystem::path& file, uint64_t most_bytes = most_input_bytes,
-                      const std::string& hint = {});
+// `most_bytes`.
+void check_input_file(const std::filesystem::path& file, uint64_t most_bytes = most_input_bytes);
 // The whole file. Error as above, or when it cannot be read.
-std::string read_input_file(const std::filesystem::path& file, uint64_t most_bytes = most_input_bytes,
-                            const std::string& hint = {});
+std::string read_input_file(const std::filesystem::path& file, uint64_t most_bytes = most_input_bytes);
 
 }  // namespace gnomon

@@ -36,7 +36,8 @@ void fill(const Program& program) {
       0,    0,    10,   'I',  'D',  'A',  'T',  0x78, 0x9c, 0x63, 0xf8, 0x0f, 0,    0x01, 0x01, 0x01, 0,
       0x1b, 0xb6, 0xee, 0x56, 0,    0,    0,    0,    'I',  'E',  'N',  'D',  0xae, 0x42, 0x60, 0x82};
   program.write("mask.png", std::string(reinterpret_cast<const char*>(png), sizeof png));
-  program.write("suite.json", R"({"schema": 1, "scenes": ["square_plane"], "size": [16, 9], "repeat": 1,
+  program.write("suite.json", R"({"schema": 1, "scenes": [")" GNOMON_TEST_SOURCE_DIR
+                              R"(/assets/scenes/square_plane.glb"], "size": [16, 9], "repeat": 1,
                                   "baseline": "shadow_mapping", "graphs": ["shadow_mapping"]})");
   const nlohmann::json row = {{"key", "a"},
                               {"scene", "s"},

@@ -42,7 +42,8 @@ TEST(Interrupt, ASignalEndsTheReferenceWithNothingLeft) {
 }
 
 constexpr const char* suite =
-    R"({"schema": 1, "scenes": ["square_plane"], "size": [32, 18], "repeat": 2, "baseline": "shadow_mapping",
+    R"({"schema": 1, "scenes": [")" GNOMON_TEST_SOURCE_DIR
+    R"(/assets/scenes/square_plane.glb"], "size": [32, 18], "repeat": 2, "baseline": "shadow_mapping",
         "graphs": ["shadow_mapping", {"name": "pcf", "set": {"kernel": [3, 5, 7, 9]}}]})";
 
 std::vector<json> rows_of(const Program& program) {
