@@ -12,6 +12,7 @@
 #include "engine/scene/animation.h"
 #include "engine/scene/scene.h"
 #include "tools/cli.h"
+#include "tools/output_folder.h"
 #include "tools/scene_export.h"
 #include "tools/scene_generate.h"
 #include "tools/scene_info.h"
@@ -41,13 +42,17 @@ void check_name(const std::string& name) {
 void generate_command(const Options& options) {
   check_name(options.name);
   const fs::path out = options.out.empty() ? resource_root() / "assets" / "scenes" : options.out;
-  fs::create_directories(out);
+  OutputFolder folder(out);
+  std::vector<std::string> names;
   for (const SceneGenerator& generator : scene_generators()) {
     if (options.name != "all" && options.name != generator.name) continue;
-    generate_scene(generator.name, out);
-    const fs::path file = out / (generator.name + ".glb");
-    print("{:<16}{:>7} kB  {}\n", generator.name, fs::file_size(file) / 1000,
-          file.lexically_normal().string());
+    names.push_back(generator.name);
+    generate_scene(generator.name, folder.file(generator.name + ".glb").parent_path());
+  }
+  folder.keep();
+  for (const std::string& name : names) {
+    const fs::path file = out / (name + ".glb");
+    print("{:<16}{:>7} kB  {}\n", name, fs::file_size(file) / 1000, file.lexically_normal().string());
   }
 }
 
