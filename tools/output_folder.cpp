@@ -37,9 +37,10 @@ void OutputFolder::make(const fs::path& folder) {
 }
 
 void OutputFolder::remove_made() {
-  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
+  std::reverse(made_.begin(), made_.end());  // the innermost one first
+  for (const fs::path& folder : made_) {
     std::error_code in_use;
-    fs::remove(*folder, in_use);
+    fs::remove(folder, in_use);
     if (in_use) return;
   }
 }
