@@ -14,7 +14,8 @@ std::filesystem::path chart_library();
 
 // Puts the images that `report` (bench/report/report_data.h) names into it as data URIs, and their paths out
 // of it, as long as they fit into `budget` bytes of files: references and visibilities before colours.
-// `report`'s "images_left_out" counts the rest. Error when a named file is missing.
+// `report`'s "images_left_out" counts those that do not fit, "images_refused" those that are no image files
+// of their run.
 void embed_images(nlohmann::json& report, uint64_t budget);
 
 // The template, styles and scripts of tools/report, the chart library and `report` in one page.
