@@ -132,8 +132,8 @@ struct Builder::Impl {
                     shape.indices.size(), "SCALAR");
   }
 
-  size_t add_node(const Json& node) {
-    document["nodes"].push_back(node);
+  size_t add_node(Json node) {
+    document["nodes"].push_back(std::move(node));
     const size_t index = document["nodes"].size() - 1;
     document["scenes"][0]["nodes"].push_back(index);
     return index;
@@ -198,7 +198,7 @@ void Builder::node(const std::string& name, uint32_t mesh, const Placement& plac
   if (placement.translation != glm::dvec3(0.0)) node["translation"] = to_json(placement.translation);
   if (placement.rotation != glm::dmat3(1.0)) node["rotation"] = rotation_json(placement.rotation);
   if (placement.scale != glm::dvec3(1.0)) node["scale"] = to_json(placement.scale);
-  impl_->add_node(node);
+  impl_->add_node(std::move(node));
 }
 
 void Builder::add(const std::string& name, const Shape& shape, uint32_t material) {
