@@ -6,47 +6,14 @@
 // light. PROTOCOL_THESIS (ch. 5.5.1): a square of a constant number of texels.
 #include "map/shadow_query.glsl"
 #include "map/light_kernel.glsl"
+#include "map/search_region.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-const int MOST_STEPS = 16;  // of shrinking; the last ones are worth parts of a texel
-
-struct Region {
-  ivec2 low, high;  // first and last texel
-  bool blocks;      // may some of it be nearer than the receiver's plane?
-  float nearest;    // linear depth that nothing in it is nearer than; NO_BLOCKER: unknown
-};
-
-Region region_around(vec2 position, vec2 half_width) {
-  vec2 most = vec2(map_size());  // beyond which the map's border is repeated anyway
-  half_width = min(half_width, most);
-  return Region(ivec2(floor(position - half_width)), ivec2(floor(position + half_width)), true, NO_BLOCKER);
-}
-
-#if PROTOCOL == PROTOCOL_EXACT
-Region find_region(Query query, Light light) {
-  LightView view = query.view;
-  vec2 half_size = half_size_of(light);
-  float z_p = query.plane.z, size = size_of(light), nearest = view.range.x;
-  Region region = region_around(query.position, vec2(0.0)), before;
-  int steps = 0;
-  do {
-    before = region;
-    float penumbra = max(penumbra_of_blocker(view, size, z_p, nearest), 0.0);
-    region = region_around(query.position, half_kernel(view, half_size, size, penumbra, z_p));
-    vec2 range = pyramid_range(region.low, region.high, query.layer);
-    region.blocks = blocks(range.x, plane_range(query, region.low, region.high).y);
-    nearest = max(linear_depth(view, range.x), nearest);
-  } while (region.blocks && (region.low != before.low || region.high != before.high) && ++steps < MOST_STEPS);
-  region.nearest = nearest;
-  return region;
-}
-#else
-Region find_region(Query query, Light light) {
+Region square_region(Query query) {
   ivec2 texel = ivec2(floor(query.position));
   return Region(texel - params.taps / 2, texel + (params.taps - 1) / 2, true, NO_BLOCKER);
 }
-#endif
 
 // x: sum of the blockers' depths among so many taps a side, evenly spread over the region; y: their number. When the region has
 // no more texels a side than taps, each is one tap.
@@ -69,7 +36,11 @@ vec2 blockers_in(Query query, Region region) {
 // Linear, or NO_BLOCKER. Where taps miss what the pyramid knows of, its nearest depth stands: the filter over the widest kernel
 // that there may be then tells how much is hidden.
 float find_blocker(Query query, Light light) {
+#if PROTOCOL == PROTOCOL_EXACT
   Region region = find_region(query, light);
+#else
+  Region region = square_region(query);
+#endif
   if (!region.blocks) return NO_BLOCKER;
   vec2 sum = blockers_in(query, region);
   float z_b = sum.y > 0.0 ? sum.x / sum.y : region.nearest;
