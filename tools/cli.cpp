@@ -29,9 +29,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint32_t max_side = 16384;  // pixels
+constexpr uint32_t kMaxSide = 16384;  // pixels
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* kFooter = R"(Examples:
   gnomon render fence --graph rbsm_nonconservative --set shadow_map=2048 --out out/fence
   gnomon bench demo                          every technique on small scenes, with a table
   gnomon explain fence --graph shadow_volumes
@@ -87,7 +87,7 @@ int run(int argc, const char* const* argv) {
   CLI::App app(
       "Gnomon: real-time shadow techniques, their error against a ray-traced reference and their run time.",
       "gnomon");
-  app.footer(footer);
+  app.footer(kFooter);
   app.set_version_flag("--version", std::string("gnomon ") + version());
   app.require_subcommand(1);
   int status = exit_done;
@@ -154,9 +154,9 @@ Extent parse_size(const std::string& text) {
     good = height.ec == std::errc() && height.ptr == end;
   }
   if (!good) fail(fmt::format("size '{}' is not WIDTHxHEIGHT", text), {}, "--size", "--size 1280x720");
-  const auto in_range = [](uint32_t side) { return side >= 1 && side <= max_side; };
+  const auto in_range = [](uint32_t side) { return side >= 1 && side <= kMaxSide; };
   if (!in_range(size.width) || !in_range(size.height))
-    fail(fmt::format("size {}: each side must be in 1..{} pixels", text, max_side), {}, "--size");
+    fail(fmt::format("size {}: each side must be in 1..{} pixels", text, kMaxSide), {}, "--size");
   return size;
 }
 

@@ -131,7 +131,7 @@ struct Topic {
   const char* help;
   void (*list)();
 };
-constexpr Topic topics[] = {
+constexpr Topic kTopics[] = {
     {"passes", "pass types with their ports and parameters", list_passes},
     {"graphs", "techniques in assets/graphs with their variables and defaults", list_graphs},
     {"scenes", "scenes in assets/scenes and $GNOMON_SCENES", list_scenes},
@@ -145,7 +145,7 @@ constexpr Topic topics[] = {
 void add_list(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("list", "list passes, graphs, scenes, metrics or devices");
   command->require_subcommand(1);
-  for (const Topic& topic : topics) {
+  for (const Topic& topic : kTopics) {
     command->add_subcommand(topic.name, topic.help)->callback([&topic, &status] {
       topic.list();
       status = exit_done;

@@ -17,7 +17,7 @@
 namespace gnomon {
 namespace {
 
-constexpr uint32_t max_samples = 1 << 20;
+constexpr uint32_t kMaxSamples = 1 << 20;
 
 struct Options {
   std::string scene, size = "1280x720";
@@ -35,8 +35,8 @@ void reference_command(const Options& options) {
   settings.camera = options.camera;
   if (options.out.extension() != ".exr")
     fail("the file's name must end in .exr", options.out.string(), "--out");
-  if (options.samples > max_samples)
-    fail(fmt::format("{} samples: at most {}", options.samples, max_samples), {}, "--samples");
+  if (options.samples > kMaxSamples)
+    fail(fmt::format("{} samples: at most {}", options.samples, kMaxSamples), {}, "--samples");
   if (!std::isfinite(options.time)) fail("the time is not a finite number", {}, "--time");
   auto scene = open_scene(options.scene, options.light_scale);
   if (scene->animation) scene = std::make_shared<const Scene>(posed(*scene, options.time));

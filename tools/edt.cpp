@@ -78,7 +78,7 @@ Image edt_mask(const Image& image, const std::string& file_for_errors) {
 
 std::optional<int64_t> squared_distance(const std::vector<uint32_t>& nearest, size_t index, uint32_t width) {
   const uint32_t site = nearest[index];
-  if (site == no_site) return std::nullopt;
+  if (site == kNoSite) return std::nullopt;
   const int64_t x = int64_t(site & 0xFFFF) - int64_t(index % width),
                 y = int64_t(site >> 16) - int64_t(index / width);
   return x * x + y * y;

@@ -20,10 +20,10 @@ struct EdtSettings {
   uint32_t warmup = 2, repeat = 1;  // runs; only the latter are measured
 };
 
-constexpr uint32_t no_site = 0xFFFFFFFF;  // shaders/glsl/lib/distance_transform.glsl
+constexpr uint32_t kNoSite = 0xFFFFFFFF;  // shaders/glsl/lib/distance_transform.glsl
 
 struct EdtRun {
-  std::vector<uint32_t> nearest;  // a pixel: x | y << 16 of its nearest site, or no_site; row 0 at the top
+  std::vector<uint32_t> nearest;  // a pixel: x | y << 16 of its nearest site, or kNoSite; row 0 at the top
   std::vector<double> gpu_ms;     // of the transform alone, a run
   std::map<std::string, std::vector<double>> step_ms;  // of its steps, a run
 };

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* packaged_charts = "/usr/share/javascript/chart.js/chart.min.js";  // libjs-chart.js
+constexpr const char* kPackagedCharts = "/usr/share/javascript/chart.js/chart.min.js";  // libjs-chart.js
 
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
   for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
@@ -54,7 +54,7 @@ fs::path chart_library() {
   if (const char* given = std::getenv("GNOMON_CHARTS"); given != nullptr && *given != '\0')
     places.emplace_back(given);
   else
-    places = {resource_root() / "tools" / "report" / "chart.min.js", packaged_charts};
+    places = {resource_root() / "tools" / "report" / "chart.min.js", kPackagedCharts};
   for (const fs::path& place : places)
     if (fs::is_regular_file(place)) return place;
   fail("the chart library Chart.js is missing", places.back().string(), {},

@@ -16,7 +16,7 @@ struct Entry {
   std::string (*make)();
 };
 
-constexpr Entry entries[] = {
+constexpr Entry kEntries[] = {
     {"area_shapes", "A square blocker above a plane under five area lights, one of each shape.",
      generate::area_shapes_scene},
     {"colonnade",
@@ -49,13 +49,13 @@ constexpr Entry entries[] = {
 
 std::vector<SceneGenerator> scene_generators() {
   std::vector<SceneGenerator> result;
-  for (const Entry& entry : entries) result.push_back({entry.name, entry.description});
+  for (const Entry& entry : kEntries) result.push_back({entry.name, entry.description});
   return result;
 }
 
 std::string scene_bytes(const std::string& name) {
   std::vector<std::string> names;
-  for (const Entry& entry : entries) {
+  for (const Entry& entry : kEntries) {
     if (name == entry.name) return entry.make();
     names.emplace_back(entry.name);
   }

@@ -25,53 +25,53 @@ std::string scene_bytes(const std::string& name);
 // Exact measures of the analytic scenes, world units; the ground is the plane y = 0 in all. All light
 // sources face straight down, their local x is the world's x, their local y the world's -z.
 namespace sphere_plane {
-constexpr double sphere_radius = 1.5;
-constexpr double sphere_centre[3] = {0.0, 2.5, 0.0};
-constexpr double light[3] = {2.0, 10.0, -1.0};
-constexpr double light_side = 0.4;   // of the square area light
-constexpr double ground_half = 6.0;  // the ground is [-6, 6] x [-6, 6]
+constexpr double kSphereRadius = 1.5;
+constexpr double kSphereCentre[3] = {0.0, 2.5, 0.0};
+constexpr double kLight[3] = {2.0, 10.0, -1.0};
+constexpr double kLightSide = 0.4;   // of the square area light
+constexpr double kGroundHalf = 6.0;  // the ground is [-6, 6] x [-6, 6]
 // Vertices lie on the sphere (to 2^-17); the faces are inside it by at most this share of the radius.
-constexpr double tessellation_error = 4e-4;
+constexpr double kTessellationError = 4e-4;
 }  // namespace sphere_plane
 
 // The blocker is the square [-1, 1] x [-1, 1] at y = 2, the light is above its centre. Hard shadow: the
-// square of half side blocker_half * light_height / (light_height - blocker_height) = 4/3. Area light of side
+// square of half side kBlockerHalf * kLightHeight / (kLightHeight - kBlockerHeight) = 4/3. Area light of side
 // s: umbra of half side 4/3 - (s / 2) / 3, penumbra out to 4/3 + (s / 2) / 3, visibility separable in x and z
 // (linear in between).
 namespace square_plane {
-constexpr double blocker_half = 1.0;
-constexpr double blocker_height = 2.0;
-constexpr double light_height = 8.0;
-constexpr double light_side = 0.32;
-constexpr double ground_half = 5.5;
+constexpr double kBlockerHalf = 1.0;
+constexpr double kBlockerHeight = 2.0;
+constexpr double kLightHeight = 8.0;
+constexpr double kLightSide = 0.32;
+constexpr double kGroundHalf = 5.5;
 }  // namespace square_plane
 
 // The blocker of square_plane under five area lights, in this order: a rectangle, a disc, a sphere, a polygon
 // (an arrow head, not convex) and a window: a rectangle whose emission is a texture, nearest, of which the
 // panes of one diagonal are black.
 namespace area_shapes {
-constexpr double blocker_half = 1.0;
-constexpr double blocker_height = 2.0;
-constexpr double light_height = 8.0;
-constexpr double lights[5][2] = {{-1.5, -1.5}, {1.5, -1.5}, {0.0, 0.0}, {-1.5, 1.5}, {1.5, 1.5}};  // x, z
-constexpr double rectangle_width = 1.6, rectangle_height = 0.8;
-constexpr double disc_radius = 0.6, sphere_radius = 0.6;
-constexpr double polygon[4][2] = {{-0.75, -0.5}, {0.0, -0.25}, {0.75, -0.5}, {0.0, 0.75}};
-constexpr double window_side = 1.2;
-constexpr int window_panes = 2;  // a side
-constexpr double ground_half = 5.5;
+constexpr double kBlockerHalf = 1.0;
+constexpr double kBlockerHeight = 2.0;
+constexpr double kLightHeight = 8.0;
+constexpr double kLights[5][2] = {{-1.5, -1.5}, {1.5, -1.5}, {0.0, 0.0}, {-1.5, 1.5}, {1.5, 1.5}};  // x, z
+constexpr double kRectangleWidth = 1.6, kRectangleHeight = 0.8;
+constexpr double kDiscRadius = 0.6, kSphereRadius = 0.6;
+constexpr double kPolygon[4][2] = {{-0.75, -0.5}, {0.0, -0.25}, {0.75, -0.5}, {0.0, 0.75}};
+constexpr double kWindowSide = 1.2;
+constexpr int kWindowPanes = 2;  // a side
+constexpr double kGroundHalf = 5.5;
 }  // namespace area_shapes
 
 // The sun's angular diameter a is 0.53 degrees, so that its penumbrae are 2 tan(a / 2) = 0.00925 of the way
 // from the caster wide. The lamp is a sphere.
 namespace sun_and_lamp {
-constexpr double blocker_half = 1.0;
-constexpr double blocker_height = 6.0;
-constexpr double sun_direction[3] = {0.5, -2.0, 0.3};  // the way it shines
-constexpr double sun_degrees = 0.53;
-constexpr double lamp[3] = {-2.5, 3.0, 1.5};
-constexpr double lamp_radius = 0.2;
-constexpr double ground_half = 5.5;
+constexpr double kBlockerHalf = 1.0;
+constexpr double kBlockerHeight = 6.0;
+constexpr double kSunDirection[3] = {0.5, -2.0, 0.3};  // the way it shines
+constexpr double kSunDegrees = 0.53;
+constexpr double kLamp[3] = {-2.5, 3.0, 1.5};
+constexpr double kLampRadius = 0.2;
+constexpr double kGroundHalf = 5.5;
 }  // namespace sun_and_lamp
 
 }  // namespace gnomon

@@ -9,10 +9,10 @@
 namespace gnomon {
 namespace {
 
-constexpr uint32_t tile_side = 40;     // pixels: wider than a penumbra at usual sizes, and divides 1280 x 720
-constexpr size_t drawings = 400;       // 10 lie beyond each end of the interval
-constexpr double beyond = 0.025;       // share of the drawings beyond each end
-constexpr uint32_t seed = 0x9e3779b9;  // any: fixed, so that results repeat
+constexpr uint32_t kTileSide = 40;  // pixels: wider than a penumbra at usual sizes, and divides 1280 x 720
+constexpr size_t kDrawings = 400;   // 10 lie beyond each end of the interval
+constexpr double kBeyond = 0.025;   // share of the drawings beyond each end
+constexpr uint32_t kSeed = 0x9e3779b9;  // any: fixed, so that results repeat
 
 struct Sums {  // over counted pixels
   double pixels = 0, square = 0, absolute = 0, signed_sum = 0, wrongly_lit = 0, wrongly_shadowed = 0;
@@ -26,8 +26,8 @@ struct Sums {  // over counted pixels
   }
 };
 
-constexpr std::array names = {"rmse", "mae", "bias", "misclassified", "wrongly_lit", "wrongly_shadowed"};
-using Figures = std::array<double, names.size()>;
+constexpr std::array kNames = {"rmse", "mae", "bias", "misclassified", "wrongly_lit", "wrongly_shadowed"};
+using Figures = std::array<double, kNames.size()>;
 
 Figures figures_of(const Sums& sums) {
   const double n = sums.pixels;
@@ -37,7 +37,7 @@ Figures figures_of(const Sums& sums) {
 }
 
 std::vector<Sums> sums_of_tiles(const ComparedPlane& plane, uint32_t width, uint32_t height) {
-  const uint32_t across = (width + tile_side - 1) / tile_side, down = (height + tile_side - 1) / tile_side;
+  const uint32_t across = (width + kTileSide - 1) / kTileSide, down = (height + kTileSide - 1) / kTileSide;
   std::vector<Sums> tiles(size_t{across} * down);
   for (uint32_t y = 0; y < height; ++y) {
     for (uint32_t x = 0; x < width; ++x) {
@@ -45,7 +45,7 @@ std::vector<Sums> sums_of_tiles(const ComparedPlane& plane, uint32_t width, uint
       if (plane.domain[i] != 0) continue;
       const double difference = double(plane.result[i]) - plane.reference[i];
       const bool lit = plane.result[i] >= 0.5f, truly_lit = plane.reference[i] >= 0.5f;
-      tiles[size_t{y / tile_side} * across + x / tile_side] +=
+      tiles[size_t{y / kTileSide} * across + x / kTileSide] +=
           {1,          difference * difference,   std::abs(difference),
            difference, double(lit && !truly_lit), double(!lit && truly_lit)};
     }
@@ -78,9 +78,9 @@ std::optional<std::map<std::string, std::array<double, 2>>> error_intervals(
     if (std::any_of(tiles.begin(), tiles.end(), [&](const auto& plane) { return plane[t].pixels > 0; }))
       used.push_back(t);
   if (used.empty()) return std::nullopt;
-  std::mt19937 generator(seed);
-  std::array<std::vector<double>, names.size()> drawn;
-  for (size_t drawing = 0; drawing < drawings; ++drawing) {
+  std::mt19937 generator(kSeed);
+  std::array<std::vector<double>, kNames.size()> drawn;
+  for (size_t drawing = 0; drawing < kDrawings; ++drawing) {
     std::vector<Sums> sums(tiles.size());
     for (size_t k = 0; k < used.size(); ++k) {
       const size_t tile = used[(uint64_t{generator()} * used.size()) >> 32];
@@ -91,10 +91,10 @@ std::optional<std::map<std::string, std::array<double, 2>>> error_intervals(
     for (size_t k = 0; k < mean.size(); ++k) drawn[k].push_back(mean[k]);
   }
   std::map<std::string, std::array<double, 2>> intervals;
-  const auto skip = static_cast<size_t>(beyond * drawings);
-  for (size_t k = 0; k < names.size(); ++k) {
+  const auto skip = static_cast<size_t>(kBeyond * kDrawings);
+  for (size_t k = 0; k < kNames.size(); ++k) {
     std::sort(drawn[k].begin(), drawn[k].end());
-    intervals[names[k]] = {drawn[k][skip], drawn[k][drawings - 1 - skip]};
+    intervals[kNames[k]] = {drawn[k][skip], drawn[k][kDrawings - 1 - skip]};
   }
   return intervals;
 }

@@ -16,18 +16,18 @@
 namespace gnomon {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using OptionalFigure = std::optional<double> ErrorMetrics::*;
 using Figure = double ErrorMetrics::*;
 
-constexpr Figure figures[] = {&ErrorMetrics::rmse,
-                              &ErrorMetrics::mae,
-                              &ErrorMetrics::max,
-                              &ErrorMetrics::bias,
-                              &ErrorMetrics::misclassified,
-                              &ErrorMetrics::wrongly_lit,
-                              &ErrorMetrics::wrongly_shadowed};
-constexpr OptionalFigure optional_figures[] = {
+constexpr Figure kFigures[] = {&ErrorMetrics::rmse,
+                               &ErrorMetrics::mae,
+                               &ErrorMetrics::max,
+                               &ErrorMetrics::bias,
+                               &ErrorMetrics::misclassified,
+                               &ErrorMetrics::wrongly_lit,
+                               &ErrorMetrics::wrongly_shadowed};
+constexpr OptionalFigure kOptionalFigures[] = {
     &ErrorMetrics::penumbra_rmse, &ErrorMetrics::umbra_light, &ErrorMetrics::leak, &ErrorMetrics::over_shadow,
     &ErrorMetrics::acne,          &ErrorMetrics::ssim,        &ErrorMetrics::flip};
 
@@ -42,7 +42,7 @@ std::optional<double> mean_of(const std::vector<const LightError*>& lights, Opti
 double mean_of(const std::vector<const LightError*>& lights, Figure field) {
   double sum = 0;
   for (const LightError* m : lights) sum += m->*field;
-  return lights.empty() ? nan : sum / static_cast<double>(lights.size());
+  return lights.empty() ? kNan : sum / static_cast<double>(lights.size());
 }
 
 // KHR_lights_punctual, "inner and outer cone angles".
@@ -73,7 +73,7 @@ double irradiance(const Light& light, const glm::dvec3& eye, const glm::dvec3& p
   return intensity * std::max(0.0, glm::dot(normal, direction));
 }
 
-constexpr double most_deep_samples = 8192;  // an even sample of the umbra: each costs hundreds of rays
+constexpr double kMostDeepSamples = 8192;  // an even sample of the umbra: each costs hundreds of rays
 
 std::optional<double> mean_over(std::span<const float> result, const std::vector<uint32_t>& pixels) {
   double sum = 0;
@@ -93,8 +93,8 @@ LightError over_lights(const std::vector<LightError>& lights) {
     all.out_of_range += m.out_of_range;
     if (m.pixels > 0 || m.nonfinite > 0) used.push_back(&m);
   }
-  for (const Figure field : figures) all.*field = mean_of(used, field);
-  for (const OptionalFigure field : optional_figures) all.*field = mean_of(used, field);
+  for (const Figure field : kFigures) all.*field = mean_of(used, field);
+  for (const OptionalFigure field : kOptionalFigures) all.*field = mean_of(used, field);
   for (const LightError* m : used)
     if (!std::isnan(all.max)) all.max = std::max(all.max, m->max);
   if (all.pixels == 0 && !lights.empty()) all.reason = lights.front().reason;
@@ -133,7 +133,7 @@ double measure_acne(std::span<const float> result, const Reference& reference, u
   const auto away = edges.tracer->away_from_edges(reference, light, edges.camera, suspects, edges.acne_texels,
                                                   edges.map_size);
   const auto wrong = std::count(away.begin(), away.end(), true);
-  return counted ? static_cast<double>(wrong) / static_cast<double>(counted) : nan;
+  return counted ? static_cast<double>(wrong) / static_cast<double>(counted) : kNan;
 }
 
 std::vector<uint32_t> deep_umbra(const Reference& reference, uint32_t light, const EdgeSettings& edges) {
@@ -141,7 +141,7 @@ std::vector<uint32_t> deep_umbra(const Reference& reference, uint32_t light, con
   for (uint32_t i = 0; i < reference.visibility[light].size(); ++i)
     if (reference.domain[light][i] == Reference::counted && reference.visibility[light][i] == 0)
       umbra.push_back(i);
-  const double step = std::max(1.0, static_cast<double>(umbra.size()) / most_deep_samples);
+  const double step = std::max(1.0, static_cast<double>(umbra.size()) / kMostDeepSamples);
   for (double k = 0; k < static_cast<double>(umbra.size()); k += step)
     sample.push_back(umbra[static_cast<size_t>(k)]);
   const auto away = edges.tracer->away_from_edges(reference, light, edges.camera, sample, edges.leak_texels,
@@ -163,7 +163,7 @@ MeasuredError measure_visibility(const Image& visibility, const Reference& refer
                                     reference.height),
                  why_none_counts(reference.domain[i])};
     const bool measurable = m.nonfinite == 0 && m.pixels > 0;
-    if (edges.tracer && m.nonfinite > 0) m.acne = nan;
+    if (edges.tracer && m.nonfinite > 0) m.acne = kNan;
     if (edges.tracer && measurable) m.acne = measure_acne(result, reference, i, edges);
     if (i < deep.size() && measurable) m.leak = mean_over(result, deep[i]);
     error.lights.push_back(m);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint32_t usual_map_side = 1024;  // texels: of techniques without a map
+constexpr uint32_t kUsualMapSide = 1024;  // texels: of techniques without a map
 
 }  // namespace
 
@@ -43,7 +43,7 @@ const std::vector<std::vector<uint32_t>>& Truth::deep_umbra_of(const EdgeSetting
 }
 
 MeasuredError Truth::error(const Image& visibility, const Image* color, const Graph& graph) const {
-  const EdgeSettings edges{&tracer_, camera_, map_side(graph).value_or(usual_map_side)};
+  const EdgeSettings edges{&tracer_, camera_, map_side(graph).value_or(kUsualMapSide)};
   // FLIP takes about as long as all the rest together, and shares nothing with it.
   std::future<double> flipped;
   if (color != nullptr)

@@ -24,7 +24,7 @@ struct Column {
   int digits = 0;
   bool where_any = false;  // only in tables where some row has a figure
 };
-constexpr Column columns[] = {
+constexpr Column kColumns[] = {
     {"misclass. %", [](const Row& row) { return figure_of(row.error, "misclassified"); }, 100, 3},
     {"wrongly lit %", [](const Row& row) { return figure_of(row.error, "wrongly_lit"); }, 100, 3},
     {"wrongly shad. %", [](const Row& row) { return figure_of(row.error, "wrongly_shadowed"); }, 100, 3},
@@ -40,7 +40,7 @@ constexpr Column columns[] = {
     {"ratio", [](const Row& row) { return row.ratio ? Figure(row.ratio->value.median) : std::nullopt; }, 1,
      3},
 };
-constexpr size_t column_count = std::size(columns);
+constexpr size_t kColumnCount = std::size(kColumns);
 using Figures = std::vector<Figure>;
 
 struct Line {
@@ -54,7 +54,7 @@ struct Group {
 
 Figures figures_of(const Row& row) {
   Figures figures;
-  for (const Column& column : columns) {
+  for (const Column& column : kColumns) {
     const Figure figure = column.figure(row);
     figures.push_back(figure ? Figure(column.scale * *figure) : std::nullopt);
   }
@@ -107,9 +107,9 @@ Group means(const std::vector<Group>& groups) {
   std::map<std::string, std::vector<std::pair<double, size_t>>> sums;
   for (const Group& one : groups) {
     for (const Line& line : one.lines) {
-      auto [entry, fresh] = sums.try_emplace(line.technique, column_count);
+      auto [entry, fresh] = sums.try_emplace(line.technique, kColumnCount);
       if (fresh) order.push_back(line.technique);
-      for (size_t i = 0; i < column_count && line.failure.empty(); ++i) {
+      for (size_t i = 0; i < kColumnCount && line.failure.empty(); ++i) {
         if (!line.figures[i]) continue;
         entry->second[i].first += *line.figures[i];
         ++entry->second[i].second;
@@ -141,9 +141,9 @@ size_t technique_width(const Group& one) {
 // Indices of the columns that a table has.
 std::vector<size_t> shown_columns(const Group& one) {
   std::vector<size_t> shown;
-  for (size_t i = 0; i < column_count; ++i) {
+  for (size_t i = 0; i < kColumnCount; ++i) {
     const auto has_figure = [i](const Line& line) { return line.figures[i].has_value(); };
-    if (!columns[i].where_any || std::any_of(one.lines.begin(), one.lines.end(), has_figure))
+    if (!kColumns[i].where_any || std::any_of(one.lines.begin(), one.lines.end(), has_figure))
       shown.push_back(i);
   }
   return shown;
@@ -153,7 +153,7 @@ std::string to_text(const Group& one) {
   const size_t width = technique_width(one);
   const std::vector<size_t> shown = shown_columns(one);
   std::string text = one.title + "\n" + fmt::format("  {:<{}}", "technique", width);
-  for (const size_t i : shown) text += fmt::format("  {:>{}}", columns[i].title, column_width(columns[i]));
+  for (const size_t i : shown) text += fmt::format("  {:>{}}", kColumns[i].title, column_width(kColumns[i]));
   text += "\n";
   for (const Line& line : one.lines) {
     text += fmt::format("  {:<{}}", line.technique, width);
@@ -162,7 +162,7 @@ std::string to_text(const Group& one) {
       continue;
     }
     for (const size_t i : shown)
-      text += fmt::format("  {:>{}}", cell(line.figures[i], columns[i].digits), column_width(columns[i]));
+      text += fmt::format("  {:>{}}", cell(line.figures[i], kColumns[i].digits), column_width(kColumns[i]));
     text += "\n";
   }
   return text;

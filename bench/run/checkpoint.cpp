@@ -22,9 +22,9 @@ struct Mode {
   const char* name;
   Frames frames;
 };
-constexpr Mode modes[] = {{TimingMode::none, "plain", &Samples::plain},
-                          {TimingMode::overlapped, "overlapped", &Samples::overlapped},
-                          {TimingMode::isolated, "isolated", &Samples::isolated}};
+constexpr Mode kModes[] = {{TimingMode::none, "plain", &Samples::plain},
+                           {TimingMode::overlapped, "overlapped", &Samples::overlapped},
+                           {TimingMode::isolated, "isolated", &Samples::isolated}};
 
 json to_json(const FrameTiming& timing) {
   json passes = json::array();
@@ -51,7 +51,7 @@ Checkpoint::Checkpoint(fs::path file, bool go_on) : file_(std::move(file)) {
   try {
     for (const json& line : read_lines(file_)) {
       group_ = line.at("group");
-      for (const Mode& mode : modes)
+      for (const Mode& mode : kModes)
         if (line.at("mode") == mode.name)
           (frames_[line.at("row")].*mode.frames).push_back(timing_of(line.at("frame")));
     }
@@ -67,7 +67,7 @@ void Checkpoint::begin(const std::string& group) {
   stream_ = std::ofstream(file_, std::ios::binary | std::ios::trunc);
   // Written anew, so that no torn line is in the middle.
   for (const auto& [key, samples] : frames_)
-    for (const Mode& mode : modes)
+    for (const Mode& mode : kModes)
       for (const FrameTiming& timing : samples.*mode.frames) keep(key, mode.mode, timing);
 }
 
@@ -77,7 +77,7 @@ Samples Checkpoint::of(const std::string& key) const {
 }
 
 void Checkpoint::keep(const std::string& key, TimingMode mode, const FrameTiming& timing) {
-  for (const Mode& one : modes)
+  for (const Mode& one : kModes)
     if (one.mode == mode)
       stream_ << json{{"group", group_}, {"row", key}, {"mode", one.name}, {"frame", to_json(timing)}}.dump()
               << '\n';

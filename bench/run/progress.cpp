@@ -13,7 +13,7 @@
 namespace gnomon {
 namespace {
 
-constexpr double redraw_seconds = 0.1;
+constexpr double kRedrawSeconds = 0.1;
 
 size_t terminal_width(std::FILE* stream) {
   winsize size{};
@@ -74,7 +74,7 @@ void Progress::update(double fraction, const std::string& note) {
   if (done_) return;
   fraction_ = std::clamp(fraction, 0.0, 1.0);
   const auto now = Clock::now();
-  if (seconds_between(last_, now) < (terminal_ ? redraw_seconds : quiet_seconds_)) return;
+  if (seconds_between(last_, now) < (terminal_ ? kRedrawSeconds : quiet_seconds_)) return;
   last_ = now;
   draw(note);
 }

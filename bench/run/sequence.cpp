@@ -11,8 +11,8 @@
 namespace gnomon {
 namespace {
 
-constexpr double plane_tolerance = 1e-3;    // of the view depth
-constexpr double normal_tolerance = 0.906;  // cosine of 25 degrees
+constexpr double kPlaneTolerance = 1e-3;    // of the view depth
+constexpr double kNormalTolerance = 0.906;  // cosine of 25 degrees
 
 bool same_view(const Camera& a, const Camera& b) {
   return a.world_from_camera == b.world_from_camera && a.fov_y == b.fov_y && a.aspect == b.aspect;
@@ -51,7 +51,7 @@ std::optional<Spread> spread_of(const std::vector<FrameResult>& frames, Figure f
 
 std::vector<uint32_t> pixels_before(const Reference& now, const Camera& camera, const Reference& before,
                                     const Camera& camera_before) {
-  std::vector<uint32_t> result(now.depth.size(), not_seen_before);
+  std::vector<uint32_t> result(now.depth.size(), kNotSeenBefore);
   if (same_view(camera, camera_before)) {
     for (uint32_t i = 0; i < result.size(); ++i)
       if (!std::isinf(now.depth[i]) && !std::isinf(before.depth[i])) result[i] = i;
@@ -65,8 +65,8 @@ std::vector<uint32_t> pixels_before(const Reference& now, const Camera& camera, 
     if (!k || std::isinf(before.depth[*k])) continue;
     const glm::dvec3 normal(before.normal[*k]);
     const bool in_plane = std::abs(glm::dot(normal, place - glm::dvec3(before.position[*k]))) <=
-                          plane_tolerance * before.depth[*k];
-    if (in_plane && glm::dot(normal, glm::dvec3(now.normal[i])) >= normal_tolerance) result[i] = *k;
+                          kPlaneTolerance * before.depth[*k];
+    if (in_plane && glm::dot(normal, glm::dvec3(now.normal[i])) >= kNormalTolerance) result[i] = *k;
   }
   return result;
 }

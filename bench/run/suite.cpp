@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr long long max_side = 16384;  // pixels; the device's own limit is checked when it is opened
-constexpr double max_light_scale = 1e6;
+constexpr long long kMaxSide = 16384;  // pixels; the device's own limit is checked when it is opened
+constexpr double kMaxLightScale = 1e6;
 
 bool is_size(const json& value) {
   return value.is_array() && value.size() == 2 && value[0].is_number_integer() &&
@@ -31,9 +31,9 @@ void read_size(SuiteReading& reading, const json& value, const std::string& plac
   const auto side = [&](size_t i) { return value[i].get<long long>(); };
   if (!is_size(value)) {
     reading.problems.add("a size must be two integers", reading.file, place, "[1280, 720]");
-  } else if (side(0) < 1 || side(1) < 1 || side(0) > max_side || side(1) > max_side) {
+  } else if (side(0) < 1 || side(1) < 1 || side(0) > kMaxSide || side(1) > kMaxSide) {
     reading.problems.add(
-        fmt::format("size {}x{}: each side must be in 1..{} pixels", side(0), side(1), max_side),
+        fmt::format("size {}x{}: each side must be in 1..{} pixels", side(0), side(1), kMaxSide),
         reading.file, place);
   } else {
     sizes.push_back({static_cast<uint32_t>(side(0)), static_cast<uint32_t>(side(1))});
@@ -118,9 +118,9 @@ std::vector<double> read_light_scales(SuiteReading& reading, const json* scale, 
   if (scale == nullptr) return standard;
   std::vector<double> scales;
   for (const json& one : scale->is_array() ? *scale : json::array({*scale})) {
-    if (!one.is_number() || !(one.get<double>() >= 0 && one.get<double>() <= max_light_scale))
+    if (!one.is_number() || !(one.get<double>() >= 0 && one.get<double>() <= kMaxLightScale))
       reading.problems.add(
-          fmt::format("light scale {}: must be a number in 0..{:g}", one.dump(), max_light_scale),
+          fmt::format("light scale {}: must be a number in 0..{:g}", one.dump(), kMaxLightScale),
           reading.file, place, "\"light_scale\": [0, 0.5, 1, 2]");
     else if (std::find(scales.begin(), scales.end(), one.get<double>()) == scales.end())
       scales.push_back(one.get<double>());

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::string_view scenes_variable = "$GNOMON_SCENES";
+constexpr std::string_view kScenesVariable = "$GNOMON_SCENES";
 
 bool is_scene(const fs::path& path) { return path.extension() == ".glb" || path.extension() == ".gltf"; }
 
@@ -49,7 +49,7 @@ void add_scene(Suite& suite, const fs::path& path) {
 
 void read_scene(SuiteReading& reading, const std::string& text, const std::string& place) {
   fs::path path;
-  const bool real = text.starts_with(scenes_variable);
+  const bool real = text.starts_with(kScenesVariable);
   if (real) {
     const fs::path folder = real_scenes_folder();
     if (!fs::is_directory(folder)) {
@@ -58,7 +58,7 @@ void read_scene(SuiteReading& reading, const std::string& text, const std::strin
                       folder.lexically_normal().string(), text));
       return;
     }
-    path = folder / fs::path(text.substr(scenes_variable.size())).relative_path();
+    path = folder / fs::path(text.substr(kScenesVariable.size())).relative_path();
   } else {
     path = fs::path(reading.file).parent_path() / text;
   }

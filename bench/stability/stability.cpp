@@ -38,12 +38,12 @@ namespace {
 namespace fs = std::filesystem;
 using Ran = StabilityMeasurement::Ran;
 
-constexpr uint64_t most_reference_pixels = uint64_t{1} << 21;  // larger images are not judged by their error
-constexpr uint64_t most_reference_rays = uint64_t{1} << 24;    // fewer samples of the light in large images
-constexpr uint32_t fewest_samples = 16;
-constexpr uint64_t most_edge_pixels = uint64_t{1} << 16;  // acne and leak cost hundreds of rays a pixel
-constexpr uint32_t usual_map_side = 1024;                 // texels: of techniques without a map
-constexpr uint32_t frames_of_history = 4;  // rendered before a technique with history is judged
+constexpr uint64_t kMostReferencePixels = uint64_t{1} << 21;  // larger images are not judged by their error
+constexpr uint64_t kMostReferenceRays = uint64_t{1} << 24;    // fewer samples of the light in large images
+constexpr uint32_t kFewestSamples = 16;
+constexpr uint64_t kMostEdgePixels = uint64_t{1} << 16;  // acne and leak cost hundreds of rays a pixel
+constexpr uint32_t kUsualMapSide = 1024;                 // texels: of techniques without a map
+constexpr uint32_t kFramesOfHistory = 4;                 // rendered before a technique with history is judged
 
 const StabilityAxis& axis_of(const std::string& name) {
   for (const StabilityAxis& axis : stability_axes())
@@ -93,7 +93,7 @@ struct Frame {
 
 Frame render(Renderer& renderer, const Graph& graph) {
   renderer.play();
-  const uint32_t frames = reads_history(graph) ? frames_of_history : 1;
+  const uint32_t frames = reads_history(graph) ? kFramesOfHistory : 1;
   for (uint32_t i = 0; i < frames; ++i) renderer.render(TimingMode::none);
   Frame frame{renderer.read("visibility"), {}};
   if (graph.outputs.contains("color")) frame.color = renderer.read("color");
@@ -116,15 +116,15 @@ std::shared_ptr<const StabilityTruth> truth_of(const Stage& stage, std::shared_p
                                                bool area, const StabilityOptions& options,
                                                StabilityReferences& references) {
   const uint64_t pixels = uint64_t(stage.size.width) * stage.size.height;
-  if (pixels > most_reference_pixels) return nullptr;
+  if (pixels > kMostReferencePixels) return nullptr;
   auto& truth = references.by_case[(area ? "area " : "hard ") + stage.scene_key];
   if (truth) return truth;
   ReferenceSettings settings;
   settings.width = stage.size.width, settings.height = stage.size.height;
   if (area) {
-    const uint64_t affordable = most_reference_rays / (pixels * scene->lights.size());
+    const uint64_t affordable = kMostReferenceRays / (pixels * scene->lights.size());
     settings.samples =
-        static_cast<uint32_t>(std::clamp<uint64_t>(affordable, fewest_samples, uint64_t{options.samples()}));
+        static_cast<uint32_t>(std::clamp<uint64_t>(affordable, kFewestSamples, uint64_t{options.samples()}));
   }
   truth = std::make_shared<const StabilityTruth>(std::move(scene), settings);
   return truth;
@@ -151,9 +151,9 @@ double constant_rmse(const Reference& reference) {
 void measure_error(const Image& visibility, const Graph& graph, const StabilityTruth& truth,
                    StabilityMeasurement& m) {
   const Reference& reference = truth.reference;
-  EdgeSettings edges{&truth.tracer, truth.scene->cameras.front(), map_side(graph).value_or(usual_map_side)};
+  EdgeSettings edges{&truth.tracer, truth.scene->cameras.front(), map_side(graph).value_or(kUsualMapSide)};
   std::vector<std::vector<uint32_t>> deep;
-  if (uint64_t(reference.width) * reference.height > most_edge_pixels)
+  if (uint64_t(reference.width) * reference.height > kMostEdgePixels)
     edges.tracer = nullptr;
   else
     for (uint32_t i = 0; i < reference.lights; ++i) deep.push_back(deep_umbra(reference, i, edges));
@@ -240,7 +240,7 @@ bool follows_light_size(const std::shared_ptr<Device>& device, const fs::path& g
 
 namespace {
 
-constexpr std::pair<Ran, const char*> ran_names[] = {{Ran::ran, "ran"},
+constexpr std::pair<Ran, const char*> kRanNames[] = {{Ran::ran, "ran"},
                                                      {Ran::refused, "refused"},
                                                      {Ran::crashed, "crashed"},
                                                      {Ran::timed_out, "timed out"},
@@ -250,7 +250,7 @@ constexpr std::pair<Ran, const char*> ran_names[] = {{Ran::ran, "ran"},
 
 nlohmann::json to_json(const StabilityMeasurement& m) {
   nlohmann::json json;
-  for (const auto& [ran, name] : ran_names)
+  for (const auto& [ran, name] : kRanNames)
     if (ran == m.ran) json["ran"] = name;
   if (!m.message.empty()) json["message"] = m.message;
   if (m.ran != Ran::ran) return json;
@@ -267,7 +267,7 @@ nlohmann::json to_json(const StabilityMeasurement& m) {
 
 StabilityMeasurement measurement_from(const nlohmann::json& json) {
   StabilityMeasurement m;
-  for (const auto& [ran, name] : ran_names)
+  for (const auto& [ran, name] : kRanNames)
     if (json.at("ran") == name) m.ran = ran;
   m.message = json.value("message", "");
   m.nonfinite = json.value("nonfinite", uint64_t{0}),

@@ -24,13 +24,13 @@ double number_of(const std::string& axis, const std::string& text, double min, d
   return number;
 }
 
-constexpr uint32_t most_pixels_a_side = 16384;
+constexpr uint32_t kMostPixelsASide = 16384;
 
 Extent extent_of(const std::string& axis, const std::string& text) {
   const size_t cross = text.find('x');
   if (cross == std::string::npos) fail(fmt::format("'{}' is not WIDTHxHEIGHT", text), {}, axis);
   const auto side = [&](const std::string& digits) {
-    return static_cast<uint32_t>(number_of(axis, digits, 1, most_pixels_a_side));
+    return static_cast<uint32_t>(number_of(axis, digits, 1, kMostPixelsASide));
   };
   return {side(text.substr(0, cross)), side(text.substr(cross + 1))};
 }

@@ -15,13 +15,13 @@ namespace fs = std::filesystem;
 using Ran = StabilityMeasurement::Ran;
 using Verdict = StabilityVerdict;
 
-constexpr double allowed_growth = 1.1;  // of the base case's RMSE
-constexpr double allowed_pixels = 2;    // wrong by 1, of the counted ones: an edge may fall otherwise
-constexpr size_t pair_axes = 4;         // of the worst axes, each two are walked together
+constexpr double kAllowedGrowth = 1.1;  // of the base case's RMSE
+constexpr double kAllowedPixels = 2;    // wrong by 1, of the counted ones: an edge may fall otherwise
+constexpr size_t kPairAxes = 4;         // of the worst axes, each two are walked together
 
 double bound(const StabilityMeasurement& m, const StabilityMeasurement& base) {
-  const double grown = allowed_growth * base.rmse;
-  return std::sqrt(grown * grown + allowed_pixels / static_cast<double>(m.pixels));
+  const double grown = kAllowedGrowth * base.rmse;
+  return std::sqrt(grown * grown + kAllowedPixels / static_cast<double>(m.pixels));
 }
 
 // What may never happen, however extreme the case is; empty: nothing of it did.
@@ -120,7 +120,7 @@ std::vector<StabilityCase> worst_pairs(const StabilityRow& row) {
     const double first = error_ratio(*a, row.base), second = error_ratio(*b, row.base);
     return first != second ? first > second : a->test < b->test;
   });
-  order.resize(std::min(order.size(), pair_axes));
+  order.resize(std::min(order.size(), kPairAxes));
   std::vector<StabilityCase> pairs;
   for (size_t i = 0; i < order.size(); ++i)
     for (size_t k = i + 1; k < order.size(); ++k) {

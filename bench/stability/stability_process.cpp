@@ -29,7 +29,7 @@ void write_all(int to, const std::string& text) {
   }
 }
 
-constexpr int status_no_memory = 101, status_exception = 102;  // of the child, when the work threw
+constexpr int kStatusNoMemory = 101, kStatusException = 102;  // of the child, when the work threw
 
 [[noreturn]] void child(const std::function<std::string()>& work, uint64_t most_bytes, int to) {
   const rlimit memory{most_bytes, most_bytes}, no_core{0, 0};
@@ -39,12 +39,12 @@ constexpr int status_no_memory = 101, status_exception = 102;  // of the child, 
   try {
     write_all(to, work());
   } catch (const std::bad_alloc&) {
-    status = status_no_memory;
+    status = kStatusNoMemory;
   } catch (const std::exception& error) {
     write_all(to, error.what());
-    status = status_exception;
+    status = kStatusException;
   } catch (const Interrupted&) {  // the parent ends, too
-    status = status_exception;
+    status = kStatusException;
   }
   _exit(status);  // destructors of what the parent owns are the parent's
 }
@@ -76,8 +76,8 @@ ChildOutcome outcome_of(int status, std::string text) {
   if (WIFSIGNALED(status))
     return {Ended::crashed, fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))};
   if (WEXITSTATUS(status) == 0) return {Ended::done, std::move(text)};
-  if (WEXITSTATUS(status) == status_no_memory) return {Ended::crashed, "out of memory"};
-  if (WEXITSTATUS(status) == status_exception) return {Ended::crashed, std::move(text)};
+  if (WEXITSTATUS(status) == kStatusNoMemory) return {Ended::crashed, "out of memory"};
+  if (WEXITSTATUS(status) == kStatusException) return {Ended::crashed, std::move(text)};
   return {Ended::crashed, fmt::format("exit status {}", WEXITSTATUS(status))};
 }
 

@@ -20,12 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float floor_half = 6, blocker_half = 1, blocker_height = 2;  // scene units
-constexpr double light_distance = 7;                                   // scene units, from the origin
-constexpr double far_depth = 12;  // scene units: about the light's farthest receiver
-constexpr glm::dvec3 offset_direction(1.0, 0.5, -0.75);
-constexpr glm::dvec3 sphere_centre(-0.9, 0.5, 0.7);
-constexpr float sphere_radius = 0.5f;
+constexpr float kFloorHalf = 6, kBlockerHalf = 1, kBlockerHeight = 2;  // scene units
+constexpr double kLightDistance = 7;                                   // scene units, from the origin
+constexpr double kFarDepth = 12;  // scene units: about the light's farthest receiver
+constexpr glm::dvec3 kOffsetDirection(1.0, 0.5, -0.75);
+constexpr glm::dvec3 kSphereCentre(-0.9, 0.5, 0.7);
+constexpr float kSphereRadius = 0.5f;
 
 glm::dmat4 frame(const glm::dvec3& eye, const glm::dvec3& target) {
   const glm::dvec3 forward = glm::normalize(target - eye);
@@ -93,14 +93,14 @@ Mesh sphere(float radius, int rings, int segments) {
 // The blocker in strips, thin ones between wide ones.
 Mesh slivers(double aspect) {
   constexpr int pieces = 8;
-  const auto width = static_cast<float>(2 * blocker_half / aspect);
+  const auto width = static_cast<float>(2 * kBlockerHalf / aspect);
   Mesh mesh;
   for (int i = 0; i < pieces; ++i) {
-    const float from = blocker_half * (2.0f * static_cast<float>(i) / pieces - 1);
-    const float to = blocker_half * (2.0f * static_cast<float>(i + 1) / pieces - 1);
+    const float from = kBlockerHalf * (2.0f * static_cast<float>(i) / pieces - 1);
+    const float to = kBlockerHalf * (2.0f * static_cast<float>(i + 1) / pieces - 1);
     const float thin = std::min(from + width, to);
-    add_quad(mesh, from, thin, -blocker_half, blocker_half, blocker_height);
-    if (thin < to) add_quad(mesh, thin, to, -blocker_half, blocker_half, blocker_height);
+    add_quad(mesh, from, thin, -kBlockerHalf, kBlockerHalf, kBlockerHeight);
+    if (thin < to) add_quad(mesh, thin, to, -kBlockerHalf, kBlockerHalf, kBlockerHeight);
   }
   return mesh;
 }
@@ -109,8 +109,8 @@ Mesh slivers(double aspect) {
 Mesh stack(uint32_t count) {
   Mesh mesh;
   for (uint32_t i = 0; i < count; ++i)
-    add_quad(mesh, -blocker_half, blocker_half, -blocker_half, blocker_half,
-             blocker_height + static_cast<float>(i) / static_cast<float>(count));
+    add_quad(mesh, -kBlockerHalf, kBlockerHalf, -kBlockerHalf, kBlockerHalf,
+             kBlockerHeight + static_cast<float>(i) / static_cast<float>(count));
   return mesh;
 }
 
@@ -131,9 +131,9 @@ Instance& add(Scene& scene, Mesh mesh, const glm::dmat4& world_from_object = glm
 }
 
 Mesh floor_of(const StabilitySetup& s) {
-  if (s.triangles > 4) return grid(floor_half, s.triangles);
-  if (s.triangles != 1) return square(floor_half, 0, std::max(1u, s.layers));
-  Mesh mesh = square(floor_half, 0);
+  if (s.triangles > 4) return grid(kFloorHalf, s.triangles);
+  if (s.triangles != 1) return square(kFloorHalf, 0, std::max(1u, s.layers));
+  Mesh mesh = square(kFloorHalf, 0);
   mesh.indices.resize(3);
   return mesh;
 }
@@ -146,17 +146,17 @@ void add_meshes(Scene& scene, const StabilitySetup& s) {
   else if (s.sliver_aspect > 1)
     add(scene, slivers(s.sliver_aspect));
   else
-    add(scene, square(blocker_half, blocker_height));
-  add(scene, sphere(sphere_radius, 12, 24), glm::translate(glm::dmat4(1.0), sphere_centre));
+    add(scene, square(kBlockerHalf, kBlockerHeight));
+  add(scene, sphere(kSphereRadius, 12, 24), glm::translate(glm::dmat4(1.0), kSphereCentre));
 }
 
 glm::dmat4 light_place(const StabilitySetup& s) {
-  if (s.flat) return frame({0, light_distance, 0}, {0, 0, 0});
-  if (s.light_inside) return frame(sphere_centre, {0, 0, 0});
+  if (s.flat) return frame({0, kLightDistance, 0}, {0, 0, 0});
+  if (s.light_inside) return frame(kSphereCentre, {0, 0, 0});
   if (s.light_height >= 0) return frame({2, s.light_height, 1}, {0, s.light_height, 0.2});
   const double angle = s.incidence * std::numbers::pi / 180;
   const glm::dvec3 to_light(0.8 * std::sin(angle), std::cos(angle), 0.6 * std::sin(angle));
-  return frame(light_distance * to_light, {0, 0, 0});
+  return frame(kLightDistance * to_light, {0, 0, 0});
 }
 
 void add_lights(Scene& scene, const StabilitySetup& s) {
@@ -171,7 +171,7 @@ void add_lights(Scene& scene, const StabilitySetup& s) {
     light.world_from_light = turn * light_place(s);
     light.outer_cone = 1.5;  // radians: outside the square frustum of 90 degrees
     light.intensity =
-        light.type == LightType::directional ? 1 : light_distance * light_distance * s.scale * s.scale;
+        light.type == LightType::directional ? 1 : kLightDistance * kLightDistance * s.scale * s.scale;
     if (s.light_size > 0) {
       light.area.emplace();
       light.area->width = light.area->height = s.light_size * s.scale;
@@ -193,7 +193,7 @@ void add_camera(Scene& scene, const StabilitySetup& s) {
   camera.world_from_camera =
       s.triangles == 0 ? frame({3.2, 4.4, 4.0}, {6.4, 9.0, 8.0}) : frame({3.2, 4.4, 4.0}, {-0.2, 0.3, 0.1});
   camera.fov_y = s.fov * std::numbers::pi / 180;
-  camera.near = s.scale * (s.depth_range > 0 ? far_depth / s.depth_range : 0.1);
+  camera.near = s.scale * (s.depth_range > 0 ? kFarDepth / s.depth_range : 0.1);
   scene.cameras.push_back(camera);
 }
 
@@ -292,8 +292,8 @@ Scene stability_scene(const StabilitySetup& s) {
   add_meshes(scene, s);
   add_lights(scene, s);
   add_camera(scene, s);
-  if (s.depth_range > 0) add_near_caster(scene, far_depth / s.depth_range);
-  transform(scene, s.scale, s.offset * offset_direction);
+  if (s.depth_range > 0) add_near_caster(scene, kFarDepth / s.depth_range);
+  transform(scene, s.scale, s.offset * kOffsetDirection);
   return s.lights == 0 ? loaded_without_lights(scene) : scene;
 }
 

@@ -16,7 +16,7 @@ struct FormatRow {
 
 #define ROW(name, bytes) \
   { VK_FORMAT_##name, #name, bytes }
-constexpr FormatRow rows[] = {
+constexpr FormatRow kRows[] = {
     ROW(R8_UNORM, 1),
     ROW(R8_SNORM, 1),
     ROW(R8_UINT, 1),
@@ -71,15 +71,15 @@ constexpr FormatRow rows[] = {
 #undef ROW
 
 const FormatRow* find_row(VkFormat format) {
-  const auto row =
-      std::find_if(std::begin(rows), std::end(rows), [&](const FormatRow& r) { return r.format == format; });
-  return row == std::end(rows) ? nullptr : row;
+  const auto row = std::find_if(std::begin(kRows), std::end(kRows),
+                                [&](const FormatRow& r) { return r.format == format; });
+  return row == std::end(kRows) ? nullptr : row;
 }
 
-constexpr uint64_t huge = std::numeric_limits<uint64_t>::max();
+constexpr uint64_t kHuge = std::numeric_limits<uint64_t>::max();
 
-uint64_t times(uint64_t a, uint64_t b) { return b != 0 && a > huge / b ? huge : a * b; }
-uint64_t plus(uint64_t a, uint64_t b) { return a > huge - b ? huge : a + b; }
+uint64_t times(uint64_t a, uint64_t b) { return b != 0 && a > kHuge / b ? kHuge : a * b; }
+uint64_t plus(uint64_t a, uint64_t b) { return a > kHuge - b ? kHuge : a + b; }
 
 }  // namespace
 

@@ -8,12 +8,12 @@
 namespace gnomon {
 
 // JSON, text and images; scenes have limits of their own.
-inline constexpr uint64_t most_input_bytes = uint64_t{1} << 30;
+inline constexpr uint64_t kMostInputBytes = uint64_t{1} << 30;
 
 // Error: it is not there, a folder, a pipe, socket or device (which may never end), or larger than
 // `most_bytes`.
-void check_input_file(const std::filesystem::path& file, uint64_t most_bytes = most_input_bytes);
+void check_input_file(const std::filesystem::path& file, uint64_t most_bytes = kMostInputBytes);
 // The whole file. Error as above, or when it cannot be read.
-std::string read_input_file(const std::filesystem::path& file, uint64_t most_bytes = most_input_bytes);
+std::string read_input_file(const std::filesystem::path& file, uint64_t most_bytes = kMostInputBytes);
 
 }  // namespace gnomon

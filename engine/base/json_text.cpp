@@ -6,11 +6,11 @@
 namespace gnomon {
 namespace {
 
-constexpr size_t longest = 64;
+constexpr size_t kLongest = 64;
 
 std::string cut(std::string text) {
-  if (text.size() <= longest) return text;
-  size_t end = longest;
+  if (text.size() <= kLongest) return text;
+  size_t end = kLongest;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80)
     --end;  // not inside a UTF-8 sequence
   text.resize(end);

@@ -8,8 +8,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* name_pattern = "^[A-Za-z0-9_-]+$";
-constexpr const char* port_pattern = "^[A-Za-z0-9_-]+\\.[^.@]+(@previous)?$";
+constexpr const char* kNamePattern = "^[A-Za-z0-9_-]+$";
+constexpr const char* kPortPattern = "^[A-Za-z0-9_-]+\\.[^.@]+(@previous)?$";
 
 json text(const char* description) { return {{"type", "string"}, {"description", description}}; }
 
@@ -140,7 +140,7 @@ json pass_schema() {
   return {{"type", "object"},
           {"required", {"id", "type"}},
           {"properties",
-           {{"id", {{"type", "string"}, {"pattern", name_pattern}}},
+           {{"id", {{"type", "string"}, {"pattern", kNamePattern}}},
             {"type", {{"enum", types}}},
             {"in", {{"type", "object"}}},
             {"from", name_list(nullptr, "passes whose outputs feed the inputs of the same names")},
@@ -173,7 +173,7 @@ nlohmann::json graph_schema() {
          {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", {{"$ref", "#/$defs/port"}}}}}}},
       {"$defs",
        {{"variable", {{"type", "string"}, {"pattern", "^\\$."}, {"description", "a variable: \"$name\""}}},
-        {"port", {{"type", "string"}, {"pattern", port_pattern}}},
+        {"port", {{"type", "string"}, {"pattern", kPortPattern}}},
         {"passes", {{"type", "array"}, {"minItems", 1}, {"items", {{"$ref", "#/$defs/pass"}}}}},
         {"pass", pass_schema()}}}};
 }

@@ -16,8 +16,8 @@
 namespace gnomon::exr {
 namespace {
 
-constexpr uint64_t max_side = 1u << 16;      // pixels; larger claims come from corrupt headers
-constexpr uint64_t max_values = 1ull << 31;  // floats in one image (8 GiB)
+constexpr uint64_t kMaxSide = 1u << 16;      // pixels; larger claims come from corrupt headers
+constexpr uint64_t kMaxValues = 1ull << 31;  // floats in one image (8 GiB)
 
 std::string text(const Imath::Box2i& box) {
   return fmt::format("({}, {}) to ({}, {})", box.min.x, box.min.y, box.max.x, box.max.y);
@@ -66,7 +66,7 @@ class Reader {
         fail("subsampled channels are not supported", name_, it.name());
       names_.push_back(input_.parts() > 1 ? part + "." + it.name() : it.name());
     }
-    if (width > max_side || height > max_side || width * height * names_.size() > max_values)
+    if (width > kMaxSide || height > kMaxSide || width * height * names_.size() > kMaxValues)
       fail(fmt::format("the EXR file is too large ({} x {}, {} channels)", width, height, names_.size()),
            name_);
   }

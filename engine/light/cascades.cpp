@@ -10,8 +10,8 @@
 namespace gnomon {
 namespace {
 
-constexpr double margin = 0.01;         // of a window's half width
-constexpr double smallest_part = 1e-4;  // of the whole view's window: no cascade is narrower
+constexpr double kMargin = 0.01;        // of a window's half width
+constexpr double kSmallestPart = 1e-4;  // of the whole view's window: no cascade is narrower
 
 // A window on the light's axes, world units about the whole view's middle.
 struct Window {
@@ -38,7 +38,7 @@ LightView part_of(const LightView& whole, const Window& window) {
   const glm::dvec2 half(whole.half_width, whole.half_height);
   const glm::dvec2 low = glm::clamp(window.min, -half, half), high = glm::clamp(window.max, -half, half);
   const glm::dvec2 middle = 0.5 * (low + high);
-  const glm::dvec2 size = glm::max((0.5 + 0.5 * margin) * (high - low), smallest_part * half);
+  const glm::dvec2 size = glm::max((0.5 + 0.5 * kMargin) * (high - low), kSmallestPart * half);
   LightView view = whole;
   view.light_from_world = glm::translate(glm::dmat4(1.0), glm::dvec3(-middle, 0.0)) * whole.light_from_world;
   view.half_width = size.x, view.half_height = size.y;

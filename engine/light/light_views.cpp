@@ -15,11 +15,11 @@
 namespace gnomon {
 namespace {
 
-constexpr double margin = 0.01;  // of near and far, and of an orthographic map's half width
-// Of far. Perspective depth tells far distances apart by 6e-8 / smallest_near of them: a texel of a map of
+constexpr double kMargin = 0.01;  // of near and far, and of an orthographic map's half width
+// Of far. Perspective depth tells far distances apart by 6e-8 / kSmallestNear of them: a texel of a map of
 // 4096 a side. Nearer casters are drawn as if they were there.
-constexpr double smallest_near = 1e-4;
-constexpr double smallest_depth = 1e-9;  // of the scene's radius: nothing nearer to the light counts
+constexpr double kSmallestNear = 1e-4;
+constexpr double kSmallestDepth = 1e-9;  // of the scene's radius: nothing nearer to the light counts
 
 struct Range {  // of depths along the view axis; empty when lo > hi
   double lo = 1e300, hi = -1e300;
@@ -138,7 +138,7 @@ bool takes(Which which, const Instance& instance) {
 // `from`: nothing nearer to the view's apex counts.
 Range depths_inside(const Scene& scene, const LightView& view, Which which, double from = 0) {
   const Frustum frustum =
-      perspective_frustum(view.half_width, view.half_height, from + smallest_depth * scene_size(scene));
+      perspective_frustum(view.half_width, view.half_height, from + kSmallestDepth * scene_size(scene));
   Range range;
   Transformed work;
   for (const Instance& instance : scene.instances)
@@ -150,8 +150,8 @@ Range depths_inside(const Scene& scene, const LightView& view, Which which, doub
 
 void set_perspective_range(LightView& view, Range range, double size) {
   if (range.empty()) range = {0.01 * size, size};  // nothing in sight: any valid range will do
-  view.far = range.hi * (1.0 + margin);
-  view.near = std::max(range.lo * (1.0 - margin), view.far * smallest_near);
+  view.far = range.hi * (1.0 + kMargin);
+  view.near = std::max(range.lo * (1.0 - kMargin), view.far * kSmallestNear);
 }
 
 }  // namespace
@@ -206,10 +206,10 @@ LightView directional_view(const Scene& scene, uint32_t index, Bounds box) {
   const glm::dvec3 centre = box.centre();
   axes[3] = axes * glm::dvec4(centre.x, centre.y, box.max.z + depth, 1.0);
   view.light_from_world = glm::inverse(axes);
-  view.half_width = std::max(0.5 * (box.max.x - box.min.x) * (1.0 + margin), 1e-3 * size);
-  view.half_height = std::max(0.5 * (box.max.y - box.min.y) * (1.0 + margin), 1e-3 * size);
-  view.near = (1.0 - margin) * depth;
-  view.far = (1.0 + margin) * 2.0 * depth;
+  view.half_width = std::max(0.5 * (box.max.x - box.min.x) * (1.0 + kMargin), 1e-3 * size);
+  view.half_height = std::max(0.5 * (box.max.y - box.min.y) * (1.0 + kMargin), 1e-3 * size);
+  view.near = (1.0 - kMargin) * depth;
+  view.far = (1.0 + kMargin) * 2.0 * depth;
   return view;
 }
 
@@ -218,7 +218,7 @@ struct Axes {
 };
 // Layer order, and the direction that is up in each face of the cube: +y on the four sides; +z on +y and -z
 // on -y, so that the upper edge of each side meets the y faces without a turn about the z axis.
-constexpr std::array<Axes, 6> cube_axes = {{{{1, 0, 0}, {0, 1, 0}},
+constexpr std::array<Axes, 6> kCubeAxes = {{{{1, 0, 0}, {0, 1, 0}},
                                             {{-1, 0, 0}, {0, 1, 0}},
                                             {{0, 1, 0}, {0, 0, 1}},
                                             {{0, -1, 0}, {0, 0, -1}},
@@ -232,7 +232,7 @@ std::vector<LightView> point_views(const Scene& scene, uint32_t index, uint32_t 
          {}, "light '" + scene.lights[index].name + "'", "use a larger shadow map");
   const double half = static_cast<double>(map_size) / (static_cast<double>(map_size) - 2.0 * border);
   std::vector<LightView> views;
-  for (const Axes& axes : cube_axes) {
+  for (const Axes& axes : kCubeAxes) {
     glm::dmat4 light_from_face(1.0);
     light_from_face[0] = glm::dvec4(glm::cross(axes.forward, axes.up), 0.0);
     light_from_face[1] = glm::dvec4(axes.up, 0.0);

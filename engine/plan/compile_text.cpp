@@ -14,7 +14,7 @@ struct Flag {
   const char* name;
 };
 
-constexpr Flag stage_names[] = {
+constexpr Flag kStageNames[] = {
     {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, "indirect"},
     {VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT, "vertex_input"},
     {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "vertex"},
@@ -27,7 +27,7 @@ constexpr Flag stage_names[] = {
     {VK_PIPELINE_STAGE_2_HOST_BIT, "host"},
 };
 
-constexpr Flag access_names[] = {
+constexpr Flag kAccessNames[] = {
     {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled_read"},
     {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage_read"},
     {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage_write"},
@@ -99,7 +99,7 @@ class Writer {
   }
 
   std::string use(const Use& use, bool is_buffer) const {
-    std::string text = flags_text(use.stages, stage_names) + "/" + flags_text(use.access, access_names);
+    std::string text = flags_text(use.stages, kStageNames) + "/" + flags_text(use.access, kAccessNames);
     return is_buffer ? text : text + "/" + layout_name(use.layout);
   }
 

@@ -51,8 +51,8 @@ NodeTransform transform_at(const AnimatedNode& node, double seconds) {
   if (node.scale) result.scale = vector_at(*node.scale, seconds);
   if (node.moving)
     for (int i = 0; i < 3; ++i)
-      if (std::abs(result.scale[i]) < smallest_scale)
-        result.scale[i] = std::copysign(smallest_scale, result.scale[i]);
+      if (std::abs(result.scale[i]) < kSmallestScale)
+        result.scale[i] = std::copysign(kSmallestScale, result.scale[i]);
   return result;
 }
 

@@ -94,7 +94,7 @@ struct Animation {
 bool is_idle(const Animation& animation);
 
 // Scales of moving nodes nearer to 0 than this (of 1) become this, so that every transform keeps its inverse.
-constexpr double smallest_scale = 1e-6;
+constexpr double kSmallestScale = 1e-6;
 
 // world_from_node of every node. Times are clamped to the key frames: nothing repeats.
 std::vector<glm::dmat4> node_transforms(const Animation& animation, double seconds);

@@ -15,7 +15,7 @@
 namespace gnomon {
 namespace {
 
-constexpr double border_tolerance = 1e-9;  // of the light's size
+constexpr double kBorderTolerance = 1e-9;  // of the light's size
 
 bool is_round(const AreaLight& area) {
   return area.shape == AreaLight::Shape::disc || area.shape == AreaLight::Shape::sphere;
@@ -72,13 +72,13 @@ std::string crossing_edges(const std::vector<glm::dvec2>& outline) {
 }
 
 bool on_polygon(const AreaLight& area, const glm::dvec2& p) {
-  const double tolerance = border_tolerance * std::max(area.width, area.height);
+  const double tolerance = kBorderTolerance * std::max(area.width, area.height);
   bool inside = false;
   for (size_t i = 0, j = area.outline.size() - 1; i < area.outline.size(); j = i++) {
     const glm::dvec2 &a = area.outline[j], &b = area.outline[i];
     const glm::dvec2 edge = b - a;
     const double side = cross(edge, p - a), along = glm::dot(edge, p - a), squared = glm::dot(edge, edge);
-    const double slack = border_tolerance * squared;
+    const double slack = kBorderTolerance * squared;
     if (side * side <= tolerance * tolerance * squared && along >= -slack && along <= squared + slack)
       return true;  // on the edge
     // Does the ray towards +x cross the edge?
@@ -171,16 +171,16 @@ std::vector<glm::dvec2> sobol_points(const AreaLight& area, uint32_t n, uint32_t
 
 std::string outline_problem(const std::vector<glm::dvec2>& outline) {
   if (outline.size() < 3) return fmt::format("an outline of {} corners: 3 are the least", outline.size());
-  if (outline.size() > most_corners)
-    return fmt::format("an outline of {} corners: {} are the most", outline.size(), most_corners);
+  if (outline.size() > kMostCorners)
+    return fmt::format("an outline of {} corners: {} are the most", outline.size(), kMostCorners);
   for (const glm::dvec2& p : outline)
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) return "the outline is not finite";
   if (std::string crossing = crossing_edges(outline); !crossing.empty()) return crossing;
   const double share = coverage(polygon_light(outline));
-  if (!(share >= least_coverage))
+  if (!(share >= kLeastCoverage))
     return fmt::format(
         "the outline covers {:.2g} of the rectangle around it, centred on the light: {} is the least",
-        std::isfinite(share) ? share : 0.0, least_coverage);
+        std::isfinite(share) ? share : 0.0, kLeastCoverage);
   return {};
 }
 
@@ -215,8 +215,8 @@ glm::dvec2 place_on(const AreaLight& area, const glm::dvec2& u) {
 
 bool on_light(const AreaLight& area, const glm::dvec2& local) {
   const glm::dvec2 half = 0.5 * glm::dvec2(area.width, area.height);
-  if (is_round(area)) return glm::length(local / half) <= 1 + border_tolerance;
-  if (glm::any(glm::greaterThan(glm::abs(local), half * (1 + border_tolerance)))) return false;
+  if (is_round(area)) return glm::length(local / half) <= 1 + kBorderTolerance;
+  if (glm::any(glm::greaterThan(glm::abs(local), half * (1 + kBorderTolerance)))) return false;
   return area.shape == AreaLight::Shape::rectangle || on_polygon(area, local);
 }
 

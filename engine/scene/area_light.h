@@ -16,11 +16,11 @@
 namespace gnomon {
 
 // Outlines that cover less of the rectangle around them cannot be sampled by rejection in reasonable time.
-inline constexpr double least_coverage = 0.01;
-inline constexpr size_t most_corners = 1024;
+inline constexpr double kLeastCoverage = 0.01;
+inline constexpr size_t kMostCorners = 1024;
 
 // What keeps an outline from being a polygon light: too few (3) or too many corners, numbers that are not
-// finite, corners that coincide, edges that meet, coverage below least_coverage of the rectangle that is
+// finite, corners that coincide, edges that meet, coverage below kLeastCoverage of the rectangle that is
 // centred on the light. Empty when it can be used.
 std::string outline_problem(const std::vector<glm::dvec2>& outline);
 // A polygon light; `outline` must have no problem. Width and height are those of the smallest rectangle

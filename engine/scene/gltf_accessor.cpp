@@ -138,13 +138,13 @@ glm::vec4 element_at(const unsigned char* bytes, const Layout& layout, glm::vec4
   return value;
 }
 
-constexpr size_t max_elements = size_t{1} << 24;  // that an accessor without a buffer view may claim
+constexpr size_t kMaxElements = size_t{1} << 24;  // that an accessor without a buffer view may claim
 
 // glTF 2.0, 5.1.1: without a buffer view all elements are zeros, sparse ones apart.
 void check_claim(const GltfFile& gltf, int index, size_t count, const std::string& place) {
-  if (count > max_elements)
+  if (count > kMaxElements)
     fail("accessor " + std::to_string(index) + " has no buffer view and claims " + std::to_string(count) +
-             " elements; at most " + std::to_string(max_elements) + " are read",
+             " elements; at most " + std::to_string(kMaxElements) + " are read",
          gltf.file, place);
 }
 

@@ -12,8 +12,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr uint32_t chunk_json = 0x4E4F534A, chunk_bin = 0x004E4942;
-constexpr int max_depth = 64;  // of nested JSON values: tinygltf recurses over extras and extensions
+constexpr uint32_t kChunkJson = 0x4E4F534A, kChunkBin = 0x004E4942;
+constexpr int kMaxDepth = 64;  // of nested JSON values: tinygltf recurses over extras and extensions
 
 uint32_t word(const Bytes& bytes, size_t offset) {
   uint32_t value = 0;
@@ -37,7 +37,7 @@ Chunks split_binary(const Bytes& bytes, const std::string& file) {
              " bytes, it has " + std::to_string(bytes.size()),
          file, "byte 8");
   const uint64_t length = word(bytes, 8), json_size = word(bytes, 12);
-  if (word(bytes, 16) != chunk_json) fail("the GLB file's first chunk is not JSON", file, "byte 16");
+  if (word(bytes, 16) != kChunkJson) fail("the GLB file's first chunk is not JSON", file, "byte 16");
   const uint64_t json_end = 20 + json_size;
   if (json_end > length) fail("the GLB file's JSON chunk is longer than the file", file, "byte 12");
   Chunks chunks{{bytes.begin() + 20, bytes.begin() + static_cast<std::ptrdiff_t>(json_end)}, {}};
@@ -45,7 +45,7 @@ Chunks split_binary(const Bytes& bytes, const std::string& file) {
     if (json_end + 8 > length)
       fail("the GLB file ends inside a chunk's header", file, "byte " + std::to_string(json_end));
     const uint64_t bin_size = word(bytes, json_end);
-    if (word(bytes, json_end + 4) != chunk_bin)
+    if (word(bytes, json_end + 4) != kChunkBin)
       fail("the GLB file's second chunk is not binary data", file, "byte " + std::to_string(json_end + 4));
     if (json_end + 8 + bin_size > length)
       fail("the GLB file's binary chunk is longer than the file", file, "byte " + std::to_string(json_end));
@@ -66,8 +66,8 @@ void check_depth(const std::string& text, const std::string& file) {
     } else if (c == '"') {
       quoted = !quoted;
     } else if (!quoted && (c == '[' || c == '{')) {
-      if (++depth > max_depth)
-        fail("JSON values are nested deeper than " + std::to_string(max_depth), file,
+      if (++depth > kMaxDepth)
+        fail("JSON values are nested deeper than " + std::to_string(kMaxDepth), file,
              "byte " + std::to_string(i));
     } else if (!quoted && (c == ']' || c == '}')) {
       --depth;
@@ -117,7 +117,7 @@ std::optional<uint64_t> whole(const Json& object, const char* name, const std::s
                               const std::string& place) {
   const auto found = object.find(name);
   if (found == object.end()) return {};
-  if (!found->is_number_unsigned() || found->get<uint64_t>() > max_file_size)
+  if (!found->is_number_unsigned() || found->get<uint64_t>() > kMaxFileSize)
     fail("must be a whole number from 0 to 2147483647, got " + found->dump(), file, at(place, name));
   return found->get<uint64_t>();
 }

@@ -13,7 +13,7 @@
 namespace gnomon {
 namespace {
 
-constexpr int largest_side = 16384;  // texels
+constexpr int kLargestSide = 16384;  // texels
 
 bool begins(const Bytes& bytes, std::string_view magic, size_t offset = 0) {
   return bytes.size() >= offset + magic.size() &&
@@ -38,7 +38,7 @@ Bytes encoded(const GltfFile& gltf, const tinygltf::Image& image) {
 std::string decode_webp(const Bytes& bytes, Texture& texture) {
   int width = 0, height = 0;
   if (WebPGetInfo(bytes.data(), bytes.size(), &width, &height) == 0) return "it is not a WebP image";
-  if (width > largest_side || height > largest_side) return "it is too large";
+  if (width > kLargestSide || height > kLargestSide) return "it is too large";
   std::vector<uint8_t> rgba(size_t{4} * static_cast<size_t>(width) * static_cast<size_t>(height));
   if (WebPDecodeRGBAInto(bytes.data(), bytes.size(), rgba.data(), rgba.size(), 4 * width) == nullptr)
     return "its WebP data is broken";
@@ -54,7 +54,7 @@ std::string decode_stb(const Bytes& bytes, Texture& texture) {
                                static_cast<int>(bytes.size()), nullptr))
     return "it is not an image that can be decoded";
   if (image.component != 4 || image.width < 1 || image.height < 1) return "it has no texels";
-  if (image.width > largest_side || image.height > largest_side) return "it is too large";
+  if (image.width > kLargestSide || image.height > kLargestSide) return "it is too large";
   const size_t count = size_t{4} * static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
   if (image.image.size() != count * (image.bits == 8 ? 1 : 2)) return "it is not whole";
   texture.width = static_cast<uint32_t>(image.width), texture.height = static_cast<uint32_t>(image.height);

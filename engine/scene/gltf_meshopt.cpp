@@ -14,7 +14,7 @@ namespace {
 constexpr std::array kNames = {"KHR_meshopt_compression", "EXT_meshopt_compression"};
 // Bytes that one byte of a stream becomes at most: a version 1 block without deltas has 256 elements of four
 // bytes for each byte of control.
-constexpr uint64_t most_expansion = 1024;
+constexpr uint64_t kMostExpansion = 1024;
 
 struct Packed {
   std::span<const unsigned char> bytes;
@@ -44,7 +44,7 @@ Packed packed_of(const GltfFile& gltf, const tinygltf::BufferView& view, const t
     problem = "its bytes are not inside buffer " + std::to_string(buffer);
   else if (packed.stride == 0 || packed.stride > 256 || packed.count * packed.stride != view.byteLength)
     problem = "count times byteStride is not the view's byteLength";
-  else if (view.byteLength > most_expansion * (length + 1))
+  else if (view.byteLength > kMostExpansion * (length + 1))
     problem = "the stream is too short for the view";
   else
     packed.bytes = std::span(buffers[buffer].data).subspan(offset, length);

@@ -126,7 +126,7 @@ Bytes read_bytes(const std::filesystem::path& path, uint64_t most) {
   if (!std::filesystem::is_regular_file(path, error)) fail("not a file");
   const uint64_t size = std::filesystem::file_size(path, error);
   if (error) fail("cannot be read: " + error.message());
-  if (std::min(size, most) > max_file_size) fail("larger than 2 GiB", {}, {}, "split the scene");
+  if (std::min(size, most) > kMaxFileSize) fail("larger than 2 GiB", {}, {}, "split the scene");
   Bytes bytes(std::min(size, most));
   std::ifstream in(path, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())) &&

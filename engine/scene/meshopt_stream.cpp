@@ -13,11 +13,11 @@
 namespace gnomon {
 namespace {
 
-constexpr size_t group = 16;             // elements whose deltas of one byte have one width
-constexpr size_t most_in_block = 256;    // elements
-constexpr size_t block_bytes = 8192;     // at most
-constexpr size_t smallest_tail = 24;     // bytes, padding included
-constexpr size_t largest_element = 256;  // bytes
+constexpr size_t kGroup = 16;            // elements whose deltas of one byte have one width
+constexpr size_t kMostInBlock = 256;     // elements
+constexpr size_t kBlockBytes = 8192;     // at most
+constexpr size_t kSmallestTail = 24;     // bytes, padding included
+constexpr size_t kLargestElement = 256;  // bytes
 
 class Reader {
  public:
@@ -43,14 +43,14 @@ class Reader {
 // Deltas of one group in `bits` bits each; all ones mean that the delta follows as a whole byte.
 void read_group(Reader& reader, unsigned bits, unsigned char* deltas) {
   if (bits == 0) return;  // zeros
-  const auto packed = reader.take(group * bits / 8);
+  const auto packed = reader.take(kGroup * bits / 8);
   if (packed.empty()) return;
   if (bits == 8) {
     std::copy(packed.begin(), packed.end(), deltas);
     return;
   }
   const unsigned ones = (1u << bits) - 1, per_byte = 8 / bits;
-  for (unsigned i = 0; i < group; ++i) {
+  for (unsigned i = 0; i < kGroup; ++i) {
     const unsigned place = i % per_byte;
     // Single bits begin with the least significant one, wider ones with the most significant.
     const unsigned shift = bits == 1 ? place : 8 - bits * (place + 1);
@@ -74,11 +74,11 @@ void read_deltas(Reader& reader, unsigned control, size_t count, unsigned char* 
     std::copy(literal.begin(), literal.end(), deltas);
     return;
   }
-  const size_t groups = (count + group - 1) / group;
+  const size_t groups = (count + kGroup - 1) / kGroup;
   const auto header = reader.take((groups + 3) / 4);
   if (header.empty()) return;
   for (size_t g = 0; g < groups; ++g)
-    read_group(reader, widths[control][header[g / 4] >> (2 * (g % 4)) & 3], deltas + g * group);
+    read_group(reader, widths[control][header[g / 4] >> (2 * (g % 4)) & 3], deltas + g * kGroup);
 }
 
 template <typename T>
@@ -110,15 +110,15 @@ bool valid_mode(unsigned char mode) { return mode == 0 || mode == 1 || (mode & 0
 bool decode_attributes_v1(std::span<unsigned char> out, size_t count, size_t stride,
                           std::span<const unsigned char> in) {
   const size_t channels = stride / 4, tail = stride + channels;
-  if (stride == 0 || stride % 4 != 0 || stride > largest_element || out.size() < count * stride) return false;
-  if (in.size() < 1 + std::max(tail, smallest_tail) || in[0] != 0xA1) return false;
-  std::array<uint32_t, largest_element / 4> last{};
+  if (stride == 0 || stride % 4 != 0 || stride > kLargestElement || out.size() < count * stride) return false;
+  if (in.size() < 1 + std::max(tail, kSmallestTail) || in[0] != 0xA1) return false;
+  std::array<uint32_t, kLargestElement / 4> last{};
   std::memcpy(last.data(), in.data() + in.size() - tail, stride);
   const auto modes = in.last(channels);
   if (!std::all_of(modes.begin(), modes.end(), valid_mode)) return false;
 
-  Reader reader(in.subspan(1, in.size() - 1 - std::max(tail, smallest_tail)));
-  const size_t most = std::min(block_bytes / stride / group * group, most_in_block);
+  Reader reader(in.subspan(1, in.size() - 1 - std::max(tail, kSmallestTail)));
+  const size_t most = std::min(kBlockBytes / stride / kGroup * kGroup, kMostInBlock);
   std::vector<unsigned char> deltas(stride * most);
   for (size_t first = 0; first < count; first += most) {
     const size_t elements = std::min(count - first, most);

@@ -27,7 +27,7 @@ bool has_meaning(const std::string& key, Shape shape) {
   return key == "shape";
 }
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double kDegree = std::numbers::pi / 180;
 
 class AreaReader {
  public:
@@ -89,7 +89,7 @@ class AreaReader {
     warn_of_keys(value, "a directional light", [&](const std::string& key) { return key == own; });
     const auto degrees = positive_number(value, own);
     if (!degrees || *degrees >= 180) return refuse(own, "not a number above 0 and below 180", hint);
-    return angular_disc(*degrees * degree);
+    return angular_disc(*degrees * kDegree);
   }
 
   std::optional<AreaLight> rectangle(const tinygltf::Value& value) {

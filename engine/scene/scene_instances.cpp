@@ -15,7 +15,7 @@
 namespace gnomon {
 namespace {
 
-constexpr size_t max_instances = size_t{1} << 20;
+constexpr size_t kMaxInstances = size_t{1} << 20;
 
 // The instance attributes of a node; each is optional, and all have one length.
 class CopyReader {
@@ -30,8 +30,8 @@ class CopyReader {
                scales = values("SCALE", 3);
     if (!count_)
       fail("no TRANSLATION, ROTATION or SCALE says how many instances there are", gltf_.file, place_);
-    if (*count_ > max_instances)
-      fail("more than " + std::to_string(max_instances) + " instances", gltf_.file, place_);
+    if (*count_ > kMaxInstances)
+      fail("more than " + std::to_string(kMaxInstances) + " instances", gltf_.file, place_);
     std::vector<glm::dmat4> copies;
     for (size_t i = 0; i < *count_; ++i) {
       NodeTransform transform;
@@ -118,8 +118,8 @@ class InstanceReader {
  private:
   // `index`: of `placed`.
   void place(uint32_t shape, const PlacedNode& placed, size_t index, glm::dmat4 node_from_object) {
-    if (scene_.instances.size() >= max_instances)
-      fail("more than " + std::to_string(max_instances) + " instances", gltf_.file,
+    if (scene_.instances.size() >= kMaxInstances)
+      fail("more than " + std::to_string(kMaxInstances) + " instances", gltf_.file,
            at("/nodes", placed.node));
     const std::string& name = gltf_.model.nodes[placed.node].name;
     const glm::dmat4 world_from_object = node_from_object == glm::dmat4(1.0)

@@ -12,8 +12,8 @@
 namespace gnomon {
 namespace {
 
-constexpr const char* extension_name = "EXT_lights_area";
-constexpr double standard_luminance = 1000;  // nits
+constexpr const char* kExtensionName = "EXT_lights_area";
+constexpr double kStandardLuminance = 1000;  // nits
 const std::vector<std::string> types = {"rect", "disk"};
 
 const tinygltf::Value& member(const tinygltf::Value& object, const std::string& name) {
@@ -46,7 +46,7 @@ class Numbers {
 
 const tinygltf::Value& definition(const GltfFile& gltf, int index, const std::string& node_place) {
   static const tinygltf::Value none;
-  const auto root = gltf.model.extensions.find(extension_name);
+  const auto root = gltf.model.extensions.find(kExtensionName);
   const tinygltf::Value& lights = root == gltf.model.extensions.end() ? none : member(root->second, "lights");
   const size_t count = lights.IsArray() ? lights.ArrayLen() : 0;
   if (index < 0 || static_cast<size_t>(index) >= count)
@@ -75,12 +75,12 @@ double largest_scale(const glm::dmat4& m) {
 std::optional<Light> read_lights_area(const GltfFile& gltf, const PlacedNode& placed,
                                       SceneWarnings& warnings) {
   const tinygltf::Node& node = gltf.model.nodes[placed.node];
-  const auto extension = node.extensions.find(extension_name);
+  const auto extension = node.extensions.find(kExtensionName);
   if (extension == node.extensions.end()) return std::nullopt;
   const tinygltf::Value& reference = member(extension->second, "light");
   const int index = reference.IsInt() ? reference.GetNumberAsInt() : -1;
   const tinygltf::Value& source =
-      definition(gltf, index, at("/nodes", placed.node) + "/extensions/" + extension_name);
+      definition(gltf, index, at("/nodes", placed.node) + "/extensions/" + kExtensionName);
   const std::string place = at("/extensions/EXT_lights_area/lights", static_cast<size_t>(index));
   const Numbers numbers(gltf, place, warnings);
   const tinygltf::Value &type = member(source, "type"), &name = member(source, "name");
@@ -98,7 +98,7 @@ std::optional<Light> read_lights_area(const GltfFile& gltf, const PlacedNode& pl
       AreaLight{disk ? AreaLight::Shape::disc : AreaLight::Shape::rectangle, size * aspect, size, {}, {}};
   light.name = name.IsString() ? name.Get<std::string>() : "";
   light.color = color_of(source);
-  light.intensity = numbers.at_least(source, "intensity", standard_luminance) * size * size * aspect *
+  light.intensity = numbers.at_least(source, "intensity", kStandardLuminance) * size * size * aspect *
                     coverage(*light.area);
   light.outer_cone = std::numbers::pi / 2;
   light.world_from_light = rigid(placed.world_from_node);

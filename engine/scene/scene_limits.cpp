@@ -12,8 +12,8 @@ namespace gnomon {
 namespace {
 
 bool within(const glm::dvec3& p) {
-  return std::abs(p.x) <= largest_coordinate && std::abs(p.y) <= largest_coordinate &&
-         std::abs(p.z) <= largest_coordinate;
+  return std::abs(p.x) <= kLargestCoordinate && std::abs(p.y) <= kLargestCoordinate &&
+         std::abs(p.z) <= kLargestCoordinate;
 }
 
 bool within(const Instance& instance, const Bounds& bounds) {
@@ -33,20 +33,20 @@ void check_limits(const Scene& scene) {
     problems.add(what, scene.file.string(), kind + " '" + name + "'");
   };
   const std::string too_far =
-      fmt::format("reaches further than {:g} from the world's origin", largest_coordinate);
+      fmt::format("reaches further than {:g} from the world's origin", kLargestCoordinate);
   for (const Instance& instance : scene.instances)
     if (!within(instance, scene.meshes[instance.mesh].bounds)) refuse("node", instance.name, too_far);
   for (const Camera& camera : scene.cameras) {
     if (!within(glm::dvec3(camera.world_from_camera[3]))) refuse("camera", camera.name, too_far);
     const double aspect = camera.aspect.value_or(1.0);
-    if (!(aspect <= largest_aspect && aspect >= 1 / largest_aspect))
+    if (!(aspect <= kLargestAspect && aspect >= 1 / kLargestAspect))
       refuse("camera", camera.name,
-             fmt::format("its aspect ratio is {:g}: must be in {:g}..{:g}", aspect, 1 / largest_aspect,
-                         largest_aspect));
+             fmt::format("its aspect ratio is {:g}: must be in {:g}..{:g}", aspect, 1 / kLargestAspect,
+                         kLargestAspect));
   }
   for (const Light& light : scene.lights) {
     const double side = light.area ? std::max(light.area->width, light.area->height) : 0.0;
-    if (!within(glm::dvec3(light.world_from_light[3])) || !(side <= largest_coordinate))
+    if (!within(glm::dvec3(light.world_from_light[3])) || !(side <= kLargestCoordinate))
       refuse("light", light.name, too_far);
   }
   problems.raise();

@@ -7,9 +7,9 @@ namespace gnomon {
 
 // Largest coordinate of what a scene places, and largest side of a light, world units: sums and squares of a
 // few stay within a float.
-constexpr double largest_coordinate = 1e15;
+constexpr double kLargestCoordinate = 1e15;
 // Of a camera's image, in either direction.
-constexpr double largest_aspect = 1e4;
+constexpr double kLargestAspect = 1e4;
 
 // Error with one problem for each node, light or camera that is out of range.
 void check_limits(const Scene& scene);

@@ -13,9 +13,9 @@
 namespace gnomon {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;
 
-double radians(double degrees) { return degrees / 180.0 * pi; }
+double radians(double degrees) { return degrees / 180.0 * kPi; }
 
 const tinygltf::Value& member(const tinygltf::Value& object, const std::string& name) {
   static const tinygltf::Value none;
@@ -61,7 +61,7 @@ class LightReader {
     const tinygltf::Node& node = gltf_.model.nodes[placed.node];
     if (std::optional<Light> area = read_lights_area(gltf_, placed, scene_.warnings);
         area && placed.ever_visible) {
-      area->map_fov = widest_map;
+      area->map_fov = kWidestMap;
       add(std::move(*area), node);
     }
     const auto extension = node.extensions.find("KHR_lights_punctual");
@@ -115,22 +115,22 @@ class LightReader {
 
   void set_cones(Light& light, const tinygltf::SpotLight& spot, const std::string& place) {
     const double outer = spot.outerConeAngle, inner = spot.innerConeAngle;
-    if (std::isfinite(outer) && outer > 0 && outer <= pi / 2 + 1e-6)
-      light.outer_cone = std::min(outer, pi / 2);
+    if (std::isfinite(outer) && outer > 0 && outer <= kPi / 2 + 1e-6)
+      light.outer_cone = std::min(outer, kPi / 2);
     else
       warn(at(place, "outerConeAngle"), "not in (0, pi/2], pi/4 is used");
     if (std::isfinite(inner) && inner >= 0 && inner < light.outer_cone)
       light.inner_cone = inner;
     else
       warn(at(place, "innerConeAngle"), "not in [0, outerConeAngle), 0 is used");
-    light.map_fov = std::min(2.0 * light.outer_cone, widest_map);
+    light.map_fov = std::min(2.0 * light.outer_cone, kWidestMap);
   }
 
   // `extras.light.fovy_deg`: the square frustum of the map. True when it was given.
   static bool set_map_fov(Light& light, const tinygltf::Value& extras) {
     const auto degrees = positive_number(member(extras, "light"), "fovy_deg");
     if (!degrees || light.type != LightType::spot) return false;
-    light.map_fov = std::min(radians(*degrees), widest_map);
+    light.map_fov = std::min(radians(*degrees), kWidestMap);
     return true;
   }
 
@@ -187,7 +187,7 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
     if (placed.moving)
       animation->cameras.push_back({static_cast<uint32_t>(scene.cameras.size()), i, glm::dmat4(1.0)});
     const tinygltf::PerspectiveCamera& view = source.perspective;
-    if (std::isfinite(view.yfov) && view.yfov > 1e-4 && view.yfov < pi - 1e-4)
+    if (std::isfinite(view.yfov) && view.yfov > 1e-4 && view.yfov < kPi - 1e-4)
       camera.fov_y = view.yfov;
     else
       scene.warnings.messages.push_back(place + "yfov is not in (0, pi), 45 degrees are used");
@@ -235,7 +235,7 @@ void ensure_light(Scene& scene) {
   light.map_fov = 2.0 * std::asin(1.02 * radius / distance);
   light.inner_cone = std::atan(std::sqrt(2.0) * std::tan(0.5 * light.map_fov));
   light.outer_cone = light.inner_cone + radians(1.0);
-  light.intensity = 0.5 * pi * distance * distance;  // a white surface facing it has radiance 0.5
+  light.intensity = 0.5 * kPi * distance * distance;  // a white surface facing it has radiance 0.5
   scene.lights.push_back(light);
   scene.warnings.messages.push_back(scene.file.string() +
                                     ": no light, a default spot light shines on the scene from above");

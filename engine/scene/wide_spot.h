@@ -7,11 +7,11 @@
 
 namespace gnomon {
 
-constexpr double widest_map = 169.0 / 180.0 * std::numbers::pi;  // radians, of a spot's square frustum
+constexpr double kWidestMap = 169.0 / 180.0 * std::numbers::pi;  // radians, of a spot's square frustum
 
 // The frustum is as wide as one may be, and less wide than the cone.
 inline bool is_cut(const Light& light) {
-  return light.type == LightType::spot && light.map_fov >= widest_map && 2.0 * light.outer_cone > widest_map;
+  return light.type == LightType::spot && light.map_fov >= kWidestMap && 2.0 * light.outer_cone > kWidestMap;
 }
 
 // The type of light whose views show all that a light shines on: a point light's, where the cone is too wide.

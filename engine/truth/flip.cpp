@@ -21,11 +21,11 @@ using Plane = std::vector<double>;
 using Kernel = std::vector<double>;  // odd length, centred
 using Planes = std::array<Plane, 3>;
 
-constexpr double color_exponent = 0.7;    // q_c
-constexpr double feature_exponent = 0.5;  // q_f
-constexpr double split_color = 0.4;       // p_c
-constexpr double split_error = 0.95;      // p_t
-constexpr double feature_width = 0.082;   // w, degrees
+constexpr double kColorExponent = 0.7;    // q_c
+constexpr double kFeatureExponent = 0.5;  // q_f
+constexpr double kSplitColor = 0.4;       // p_c
+constexpr double kSplitError = 0.95;      // p_t
+constexpr double kFeatureWidth = 0.082;   // w, degrees
 
 struct Size {
   int width = 0, height = 0;
@@ -142,10 +142,10 @@ std::vector<glm::dvec3> perceived_color(const Planes& ycxcz, Size size, double p
 // The perceptible range of color differences is stretched over [0, 1] (eq. 6).
 double redistribute(double difference) {
   static const double largest =
-      std::pow(hyab(hunt_lab_from_rgb({0, 1, 0}), hunt_lab_from_rgb({0, 0, 1})), color_exponent);
-  const double value = std::pow(difference, color_exponent), split = split_color * largest;
-  if (value < split) return split_error / split * value;
-  return split_error + (value - split) / (largest - split) * (1 - split_error);
+      std::pow(hyab(hunt_lab_from_rgb({0, 1, 0}), hunt_lab_from_rgb({0, 0, 1})), kColorExponent);
+  const double value = std::pow(difference, kColorExponent), split = kSplitColor * largest;
+  if (value < split) return kSplitError / split * value;
+  return kSplitError + (value - split) / (largest - split) * (1 - kSplitError);
 }
 
 // Positive weights sum to 1, negative ones to -1.
@@ -157,7 +157,7 @@ void normalize_feature(Kernel& kernel) {
 
 // Magnitudes of edges (first derivative of a Gaussian) or points (second derivative), section 4.2.
 Plane features(const Plane& luminance, Size size, double pixels_per_degree, bool edges) {
-  const double sigma = 0.5 * feature_width * pixels_per_degree;
+  const double sigma = 0.5 * kFeatureWidth * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   const auto gauss = [&](double i) { return std::exp(-i * i / (2 * sigma * sigma)); };
   Kernel smooth = sample_kernel(radius, gauss);
@@ -225,7 +225,7 @@ double flip(const Image& test, const Image& reference, double pixels_per_degree)
   for (size_t i = 0; i < color_a.size(); ++i) {
     const double color = redistribute(hyab(color_a[i], color_b[i]));
     const double feature = std::max(std::abs(edges_a[i] - edges_b[i]), std::abs(points_a[i] - points_b[i]));
-    const double feature_error = std::pow(feature / std::numbers::sqrt2, feature_exponent);  // eq. 7
+    const double feature_error = std::pow(feature / std::numbers::sqrt2, kFeatureExponent);  // eq. 7
     total += std::pow(color, 1 - feature_error);                                             // eq. 8
   }
   return total / static_cast<double>(color_a.size());

@@ -13,7 +13,7 @@
 namespace gnomon {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 void require_size(size_t got, size_t expected, const char* what) {
   if (got != expected) fail(fmt::format("{} has {} pixels, {} expected", what, got, expected));
@@ -24,17 +24,17 @@ struct Mean {
   double sum = 0;
   uint64_t count = 0;
   void add(double value) { sum += value, ++count; }
-  double value() const { return count ? sum / static_cast<double>(count) : nan; }
+  double value() const { return count ? sum / static_cast<double>(count) : kNan; }
   std::optional<double> optional() const { return count ? std::optional(value()) : std::nullopt; }
 };
 
-constexpr int ssim_radius = 5;  // an 11 x 11 window
-using Kernel = std::array<double, 2 * ssim_radius + 1>;
+constexpr int kSsimRadius = 5;  // an 11 x 11 window
+using Kernel = std::array<double, 2 * kSsimRadius + 1>;
 
 Kernel ssim_kernel() {
   Kernel kernel{};
-  for (int i = -ssim_radius; i <= ssim_radius; ++i)
-    kernel[i + ssim_radius] = std::exp(-i * i / (2 * 1.5 * 1.5));
+  for (int i = -kSsimRadius; i <= kSsimRadius; ++i)
+    kernel[i + kSsimRadius] = std::exp(-i * i / (2 * 1.5 * 1.5));
   return kernel;
 }
 
@@ -42,9 +42,9 @@ Kernel ssim_kernel() {
 // `stride` between neighbours on the axis, `length` pixels on it, `index` of the pixel on it.
 double window_mean(const double* pixel, int64_t stride, int index, int length, const Kernel& kernel) {
   double sum = 0, weight = 0;
-  for (int i = std::max(-ssim_radius, -index); i <= std::min(ssim_radius, length - 1 - index); ++i) {
-    sum += kernel[i + ssim_radius] * pixel[i * stride];
-    weight += kernel[i + ssim_radius];
+  for (int i = std::max(-kSsimRadius, -index); i <= std::min(kSsimRadius, length - 1 - index); ++i) {
+    sum += kernel[i + kSsimRadius] * pixel[i * stride];
+    weight += kernel[i + kSsimRadius];
   }
   return sum / weight;
 }
@@ -113,8 +113,8 @@ void count_pixels(ErrorMetrics& m, std::span<const float> result, std::span<cons
 
 // No figure can be given: an image with a NaN must not look good, an empty domain must not look perfect.
 void set_undefined(ErrorMetrics& m) {
-  m.rmse = m.mae = m.max = m.bias = m.misclassified = m.wrongly_lit = m.wrongly_shadowed = nan;
-  if (m.nonfinite > 0) m.penumbra_rmse = m.umbra_light = m.over_shadow = m.ssim = nan;
+  m.rmse = m.mae = m.max = m.bias = m.misclassified = m.wrongly_lit = m.wrongly_shadowed = kNan;
+  if (m.nonfinite > 0) m.penumbra_rmse = m.umbra_light = m.over_shadow = m.ssim = kNan;
 }
 
 }  // namespace
@@ -169,12 +169,12 @@ std::optional<double> flicker(const SequenceImages& now, const SequenceImages& b
   Mean change;
   for (size_t i = 0; i < size; ++i) {
     const size_t k = before_of[i];
-    if (k == not_seen_before || now.domain[i] != 0 || before.domain[k] != 0) continue;
+    if (k == kNotSeenBefore || now.domain[i] != 0 || before.domain[k] != 0) continue;
     const double error = double(now.result[i]) - now.reference[i];
     const double error_before = double(before.result[k]) - before.reference[k];
     change.add(std::abs(error - error_before));
   }
-  if (change.count > 0 && !std::isfinite(change.sum)) return nan;
+  if (change.count > 0 && !std::isfinite(change.sum)) return kNan;
   return change.optional();
 }
 

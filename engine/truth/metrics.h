@@ -43,11 +43,11 @@ struct SequenceImages {
   std::span<const uint8_t> domain;
 };
 // Where a pixel's point was in the frame before.
-constexpr uint32_t not_seen_before = UINT32_MAX;
+constexpr uint32_t kNotSeenBefore = UINT32_MAX;
 // How much the error changes from one frame to the next where a point is seen in both: mean
 // |(result - reference) - (result before - reference before)| over the counted pixels whose point was counted
 // in the frame before. The shadow's own movement cancels out; what remains is popping, swimming and noise.
-// `before_of`: for each pixel its point's pixel in the frame before, or not_seen_before. Absent without such
+// `before_of`: for each pixel its point's pixel in the frame before, or kNotSeenBefore. Absent without such
 // pixels; NaN where a result is not finite.
 std::optional<double> flicker(const SequenceImages& now, const SequenceImages& before,
                               std::span<const uint32_t> before_of);

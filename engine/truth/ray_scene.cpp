@@ -19,13 +19,13 @@
 namespace gnomon {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr double rounding = 1.0 / (1 << 20);  // of a coordinate: 16 times a float's largest relative error
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr double kRounding = 1.0 / (1 << 20);  // of a coordinate: 16 times a float's largest relative error
 // Embree takes coordinates up to 1.8e18; less, so that sums of a few stay below. What a loaded scene places
 // is nearer to the world's origin than half of it (scene_limits.h).
-constexpr double largest = 1e16;
+constexpr double kLargest = 1e16;
 // Shadow rays towards a point end just before it, so that a surface touching the light does not put it out.
-constexpr float before_light = 1.0f - 1e-6f;
+constexpr float kBeforeLight = 1.0f - 1e-6f;
 
 #if RTC_VERSION_MAJOR >= 4
 using Context = RTCRayQueryContext;
@@ -128,7 +128,7 @@ void filter_hits(const RTCFilterFunctionNArguments* args) {
       }
       // So near that the rounding of its mesh's vertices may have moved it before the ray's start.
       if (!query->primary &&
-          RTCRayN_tfar(args->ray, args->N, i) * glm::length(direction) <= rounding * geometry->extent) {
+          RTCRayN_tfar(args->ray, args->N, i) * glm::length(direction) <= kRounding * geometry->extent) {
         geometry->corners(triangle, p);
         if (!ahead(p, query->start, direction)) return true;
       }
@@ -142,7 +142,7 @@ void filter_hits(const RTCFilterFunctionNArguments* args) {
 
 // Of a ray that Embree takes.
 bool representable(const glm::dvec3& v) {
-  return std::abs(v.x) <= largest && std::abs(v.y) <= largest && std::abs(v.z) <= largest;
+  return std::abs(v.x) <= kLargest && std::abs(v.y) <= kLargest && std::abs(v.z) <= kLargest;
 }
 
 struct Segment {
@@ -154,8 +154,8 @@ struct Segment {
 // reach lies beyond all of the scene.
 Segment segment(const glm::vec3& start, const glm::dvec3& target, bool infinite) {
   const glm::dvec3 way = infinite ? target : target - glm::dvec3(start);
-  if (representable(way)) return {glm::vec3(way), infinite ? infinity : before_light};
-  return {glm::vec3(glm::normalize(way)), infinity};
+  if (representable(way)) return {glm::vec3(way), infinite ? kInfinity : kBeforeLight};
+  return {glm::vec3(glm::normalize(way)), kInfinity};
 }
 
 }  // namespace
@@ -188,7 +188,7 @@ struct RayScene::Impl {
     for (const glm::vec3& p : mesh.positions) {
       const glm::dvec3 local(geometry.local_from_object * glm::dvec4(p, 1.0));
       if (!representable(local))
-        fail(fmt::format("'{}' reaches further than {} from the camera", mesh.name, largest),
+        fail(fmt::format("'{}' reaches further than {} from the camera", mesh.name, kLargest),
              geometry.scene->file.string());
       for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(local[k]);
       geometry.extent = std::max(geometry.extent, glm::length(local));
@@ -211,9 +211,9 @@ struct RayScene::Impl {
       glm::dvec3 rounded(0);  // what the coordinates' roundings come to in the world
       for (int k = 0; k < 3; ++k) rounded += object[k] * glm::abs(glm::dvec3(geometry.local_from_object[k]));
       const double most = std::max({rounded.x, rounded.y, rounded.z});
-      if (most <= largest) size = std::max(size, most);  // not of an instance that is flat
+      if (most <= kLargest) size = std::max(size, most);  // not of an instance that is flat
     }
-    return rounding * size;
+    return kRounding * size;
   }
 };
 
@@ -267,7 +267,7 @@ std::optional<SurfaceHit> RayScene::first_hit(const glm::dvec3& from, const glm:
   ray.ray.org_x = org.x, ray.ray.org_y = org.y, ray.ray.org_z = org.z;
   ray.ray.dir_x = dir.x, ray.ray.dir_y = dir.y, ray.ray.dir_z = dir.z;
   ray.ray.tnear = static_cast<float>(t_near);
-  ray.ray.tfar = infinity;
+  ray.ray.tfar = kInfinity;
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   intersect(impl_->scene, query, ray);
@@ -322,7 +322,7 @@ uint32_t RayScene::occluded(const glm::dvec3& from, const glm::dvec3& normal, co
     if (i >= count) continue;
     const auto [dir, far] = segment(org, targets[i], infinite);
     if (std::isnan(dir.x)) {
-      valid[i] = 0, rays.tfar[i] = -infinity;  // blocked
+      valid[i] = 0, rays.tfar[i] = -kInfinity;  // blocked
       continue;
     }
     rays.org_x[i] = org.x, rays.org_y[i] = org.y, rays.org_z[i] = org.z;

@@ -20,8 +20,8 @@
 namespace gnomon {
 namespace {
 
-constexpr uint32_t max_side = 1u << 15;
-constexpr uint32_t max_samples = 1u << 20;
+constexpr uint32_t kMaxSide = 1u << 15;
+constexpr uint32_t kMaxSamples = 1u << 20;
 
 // Rays through pixel centres; their parameter is the distance along the view axis.
 struct PrimaryRays {
@@ -75,8 +75,8 @@ uint32_t table_size(const Scene& scene, uint32_t samples) {
   double needed = samples;
   for (const Light& light : scene.lights)
     if (is_area(light, samples) && light.area->shape == AreaLight::Shape::polygon)
-      needed = std::max(needed, 1.1 * samples / std::max(coverage(*light.area), least_coverage));
-  return static_cast<uint32_t>(std::min<double>(needed, max_samples));
+      needed = std::max(needed, 1.1 * samples / std::max(coverage(*light.area), kLeastCoverage));
+  return static_cast<uint32_t>(std::min<double>(needed, kMaxSamples));
 }
 
 class PixelShader {
@@ -190,11 +190,11 @@ void store_surface(Reference& r, const SurfaceHit& hit, const glm::dvec3& eye, s
 }
 
 void check_settings(const Scene& scene, const ReferenceSettings& s) {
-  if (s.width == 0 || s.height == 0 || s.width > max_side || s.height > max_side)
-    fail(fmt::format("cannot trace {} x {} pixels: 1 to {} a side", s.width, s.height, max_side));
+  if (s.width == 0 || s.height == 0 || s.width > kMaxSide || s.height > kMaxSide)
+    fail(fmt::format("cannot trace {} x {} pixels: 1 to {} a side", s.width, s.height, kMaxSide));
   if (s.camera >= scene.cameras.size())
     fail(fmt::format("no camera {}: the scene has {}", s.camera, scene.cameras.size()), scene.file.string());
-  if (s.samples > max_samples) fail(fmt::format("{} samples: at most {}", s.samples, max_samples));
+  if (s.samples > kMaxSamples) fail(fmt::format("{} samples: at most {}", s.samples, kMaxSamples));
 }
 
 // Standard error of the visibility in penumbrae. A half set's error is sqrt(2) that of the whole set at

@@ -17,8 +17,8 @@
 namespace gnomon {
 namespace {
 
-constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
-constexpr std::array<const char*, 3> colors = {"R", "G", "B"};
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+constexpr std::array<const char*, 3> kColors = {"R", "G", "B"};
 
 std::string light_prefix(size_t light) { return light == 0 ? "" : fmt::format("light{}.", light); }
 
@@ -54,10 +54,10 @@ std::vector<std::string> channel_names(size_t lights) {
     names.push_back(light_prefix(i) + "domain");
   }
   names.insert(names.end(), {"Z", "samples", "noise_floor"});
-  for (const char* axis : axes) names.push_back(fmt::format("N.{}", axis));
-  for (const char* axis : axes) names.push_back(fmt::format("P.{}", axis));
-  for (const char* axis : axes) names.push_back(fmt::format("Ns.{}", axis));
-  for (const char* color : colors) names.push_back(fmt::format("albedo.{}", color));
+  for (const char* axis : kAxes) names.push_back(fmt::format("N.{}", axis));
+  for (const char* axis : kAxes) names.push_back(fmt::format("P.{}", axis));
+  for (const char* axis : kAxes) names.push_back(fmt::format("Ns.{}", axis));
+  for (const char* color : kColors) names.push_back(fmt::format("albedo.{}", color));
   return names;
 }
 
@@ -223,10 +223,10 @@ Reference reference_from_image(const Image& image, const std::filesystem::path& 
   r.depth = reader.scalar("Z", 0, std::numeric_limits<float>::infinity());
   r.samples = static_cast<uint32_t>(reader.constant("samples", 1, 1 << 20));
   r.noise_floor = reader.constant("noise_floor", 0, 1);
-  r.normal = reader.vector("N", axes);
-  r.position = reader.vector("P", axes);
-  r.shading_normal = reader.vector("Ns", axes);
-  r.albedo = reader.vector("albedo", colors);
+  r.normal = reader.vector("N", kAxes);
+  r.position = reader.vector("P", kAxes);
+  r.shading_normal = reader.vector("Ns", kAxes);
+  r.albedo = reader.vector("albedo", kColors);
   return r;
 }
 
@@ -235,7 +235,7 @@ std::string reference_key(const Scene& scene, const ReferenceSettings& settings)
     fail(fmt::format("no camera {}: the scene has {}", settings.camera, scene.cameras.size()),
          scene.file.string());
   KeyHash hash;
-  const std::string_view version = tracer_version;
+  const std::string_view version = kTracerVersion;
   hash.bytes(version.data(), version.size());
   for (const size_t count : {scene.meshes.size(), scene.materials.size(), scene.textures.size(),
                              scene.instances.size(), scene.lights.size()})

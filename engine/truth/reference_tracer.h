@@ -11,7 +11,7 @@
 namespace gnomon {
 
 // Part of every cache key: raise it when a change of the tracer may change a result.
-inline constexpr const char* tracer_version = "2";
+inline constexpr const char* kTracerVersion = "2";
 
 struct ReferenceTracer::Impl {
   explicit Impl(const Scene& source) : scene(source) {}

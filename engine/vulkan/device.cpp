@@ -82,7 +82,7 @@ struct ResultName {
   VkResult result;
   const char *name, *what;
 };
-constexpr ResultName results[] = {
+constexpr ResultName kResults[] = {
     {VK_ERROR_INITIALIZATION_FAILED, "VK_ERROR_INITIALIZATION_FAILED", "the driver cannot begin"},
     {VK_ERROR_DEVICE_LOST, "VK_ERROR_DEVICE_LOST", "the device is lost: it crashed or took too long"},
     {VK_ERROR_MEMORY_MAP_FAILED, "VK_ERROR_MEMORY_MAP_FAILED", "the device's memory cannot be mapped"},
@@ -102,7 +102,7 @@ void check(VkResult result, const char* call) {
   if (result >= 0) return;
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
     fail(fmt::format("out of memory in {}", call), {}, {}, "use a smaller --size or shadow map");
-  for (const auto& [known, name, what] : results)
+  for (const auto& [known, name, what] : kResults)
     if (known == result)
       fail(fmt::format("{}: {} ({})", call, what, name), {}, {}, "another --device may do");
   fail(fmt::format("{}: the driver fails with the unknown result {}", call, int(result)), {}, {},

@@ -11,7 +11,7 @@
 namespace gnomon {
 namespace {
 
-constexpr double widest_penumbra = 0.05;  // of the scene's diagonal
+constexpr double kWidestPenumbra = 0.05;  // of the scene's diagonal
 
 class DistancePenumbra : public Pass {
  public:
@@ -50,7 +50,7 @@ class DistancePenumbra : public Pass {
     e.fact("penumbra_world", width_);
     const double diagonal = 2.0 * e.scene().bounds.radius();
     if (e.params().choice("metric") == "world" && !e.connected("width") &&
-        width_ > widest_penumbra * diagonal)
+        width_ > kWidestPenumbra * diagonal)
       e.warn("a penumbra this wide, more than a twentieth of the scene's diagonal, dissolves shadows");
   }
   void record(Context& c) override {

@@ -19,13 +19,13 @@
 namespace gnomon {
 namespace {
 
-constexpr double steep_slope = 20;          // MAX_SLOPE of shaders/glsl/lib/receiver_plane.glsl
-constexpr double most_grazed = 0.5;         // share of the lit surface beyond which a light is warned of
-constexpr double most_of_map = 0.1;         // share of the map's side that a filter may be wide
-constexpr uint32_t least_useful_side = 16;  // texels: below, shadows of the ordinary stability scene are lost
-constexpr double most_rise = 0.1;           // share of the depth range over half a kernel
-constexpr double least_texels = 0.5;        // of the map's side, a pixel of the image's
-constexpr uint64_t most_looks =
+constexpr double kSteepSlope = 20;         // MAX_SLOPE of shaders/glsl/lib/receiver_plane.glsl
+constexpr double kMostGrazed = 0.5;        // share of the lit surface beyond which a light is warned of
+constexpr double kMostOfMap = 0.1;         // share of the map's side that a filter may be wide
+constexpr uint32_t kLeastUsefulSide = 16;  // texels: below, shadows of the ordinary stability scene are lost
+constexpr double kMostRise = 0.1;          // share of the depth range over half a kernel
+constexpr double kLeastTexels = 0.5;       // of the map's side, a pixel of the image's
+constexpr uint64_t kMostLooks =
     1 << 17;  // from a light's points at triangles, evenly spread over the scene's
 
 using Corners = std::array<glm::dvec3, 3>;
@@ -94,7 +94,7 @@ bool inside(const Mesh& mesh, const glm::dmat4& light_from_object) {
 double grazed_share(const Scene& scene, const Light& light, double slope,
                     const std::vector<glm::dvec3>& points) {
   const glm::dmat4 light_from_world = glm::inverse(light.world_from_light);
-  const uint64_t stride = 1 + scene.triangles() * points.size() / most_looks;
+  const uint64_t stride = 1 + scene.triangles() * points.size() / kMostLooks;
   LitArea area{points, light.type == LightType::directional, slope};
   uint64_t place = 0;  // of the instance's first triangle among all
   for (const Instance& instance : scene.instances) {
@@ -122,8 +122,8 @@ const Instance* surrounding_caster(const Scene& scene, const Light& light) {
 namespace {
 
 // Slope beyond which a map of `side` texels, foreshortened by it, tells as little as one of
-// least_useful_side.
-double most_slope(uint32_t side) { return std::clamp(double(side) / least_useful_side, 1.0, steep_slope); }
+// kLeastUsefulSide.
+double most_slope(uint32_t side) { return std::clamp(double(side) / kLeastUsefulSide, 1.0, kSteepSlope); }
 
 void warn_about_light(Environment& e, const Light& light, uint32_t side, MapsFrom from) {
   constexpr double degrees = 180 / std::numbers::pi;
@@ -131,7 +131,7 @@ void warn_about_light(Environment& e, const Light& light, uint32_t side, MapsFro
   const bool area = from == MapsFrom::area && shines_as_area(light);
   const double share =
       grazed_share(e.scene(), light, slope, area ? border_points(*light.area) : std::vector{glm::dvec3(0.0)});
-  if (share > most_grazed)
+  if (share > kMostGrazed)
     e.warn(fmt::format(
         "{}light '{}' meets {:.0f} % of what it shines on at more than {:.0f} degrees from the normal: "
         "shadows there are coarser than elsewhere",
@@ -143,11 +143,11 @@ void warn_about_light(Environment& e, const Light& light, uint32_t side, MapsFro
 }
 
 // engine/light/light_views.cpp lets no perspective range be wider.
-constexpr double widest_range = 1e4 * (1 - 1e-9);  // far / near
+constexpr double kWidestRange = 1e4 * (1 - 1e-9);  // far / near
 
 void warn_about_range(Environment& e) {
   for (const LightView& view : e.views("views").views) {
-    if (view.orthographic || view.far < widest_range * view.near) continue;
+    if (view.orthographic || view.far < kWidestRange * view.near) continue;
     e.warn(fmt::format(
         "what is nearer to light '{}' than {:.3g} casts as if it were there, and receives no shadow",
         e.scene().lights[view.light].name, view.near));
@@ -159,9 +159,9 @@ void warn_about_range(Environment& e) {
 
 void warn_about_maps(Environment& e, uint32_t side, MapsFrom from) {
   const uint32_t pixels = std::max(e.settings().width, e.settings().height);
-  if (side < least_useful_side)
-    e.warn(fmt::format("a map of {} texels a side tells little: use at least {}", side, least_useful_side));
-  else if (side < least_texels * pixels)
+  if (side < kLeastUsefulSide)
+    e.warn(fmt::format("a map of {} texels a side tells little: use at least {}", side, kLeastUsefulSide));
+  else if (side < kLeastTexels * pixels)
     e.warn(fmt::format("a map of {} texels a side is coarse for an image of {} pixels", side, pixels));
   for (const Light& light : e.scene().lights) warn_about_light(e, light, side, from);
   warn_about_range(e);
@@ -169,7 +169,7 @@ void warn_about_maps(Environment& e, uint32_t side, MapsFrom from) {
 
 void warn_about_kernel(Environment& e, uint32_t side) {
   const auto kernel = e.params().integer("kernel");
-  if (kernel > 1 && static_cast<double>(kernel) > most_of_map * side)
+  if (kernel > 1 && static_cast<double>(kernel) > kMostOfMap * side)
     e.warn(fmt::format("a kernel of {} texels covers much of a map of {}: shadows are blurred away", kernel,
                        side));
 }
@@ -179,15 +179,15 @@ void warn_about_rise(Environment& e, uint32_t side) {
   for (const LightView& view : e.views("views").views) {
     const double middle = view.orthographic ? 1.0 : 0.5 * (view.near + view.far);
     const double texel = 2 * std::max(view.half_width, view.half_height) * middle / side;
-    const double slope = most_rise * (view.far - view.near) / (half_kernel * texel);
+    const double slope = kMostRise * (view.far - view.near) / (half_kernel * texel);
     const Light& light = e.scene().lights[view.light];
-    const double share = slope < steep_slope ? grazed_share(e.scene(), light, slope) : 0;
-    if (share <= most_grazed) continue;
+    const double share = slope < kSteepSlope ? grazed_share(e.scene(), light, slope) : 0;
+    if (share <= kMostGrazed) continue;
     e.warn(
         fmt::format("{:.0f} % of what light '{}' shines on rises, within half a kernel of {:.0f} texels, "
                     "over more than {:.0f} % "
                     "of the map's depth range: a smaller kernel or a larger map would tell it from occluders",
-                    100 * share, light.name, 2 * half_kernel, 100 * most_rise));
+                    100 * share, light.name, 2 * half_kernel, 100 * kMostRise));
     return;
   }
 }

@@ -48,12 +48,12 @@ double reference_depth(const SceneFacts& facts, const Params& params) {
   return given > 0 ? given : facts.middle_depth;
 }
 
-constexpr double most_of_image = 0.25;  // share of the image's smaller side that the filter may be wide
+constexpr double kMostOfImage = 0.25;  // share of the image's smaller side that the filter may be wide
 
 void warn_about_width(Environment& e) {
   const double width = e.params().number("width");
   const uint32_t side = std::min(e.settings().width, e.settings().height);
-  if (width > 1 && width > most_of_image * side)
+  if (width > 1 && width > kMostOfImage * side)
     e.warn("a filter of " + std::to_string(std::lround(width)) + " pixels is wide for an image of " +
            std::to_string(side));
 }

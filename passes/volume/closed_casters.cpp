@@ -13,7 +13,7 @@
 namespace gnomon {
 namespace {
 
-constexpr size_t most_hollows = 16;  // more are not looked into: each takes a turn over the whole mesh
+constexpr size_t kMostHollows = 16;  // more are not looked into: each takes a turn over the whole mesh
 
 using Corners = std::array<glm::dvec3, 3>;
 
@@ -90,7 +90,7 @@ bool is_solid(const Mesh& mesh) {
   size_t hollows = 0;
   for (const auto& [name, volume] : volumes) {
     if (volume > 0) continue;
-    if (++hollows > most_hollows) return false;
+    if (++hollows > kMostHollows) return false;
     if (!is_inside(without(mesh, shell, name), glm::dvec3(mesh.positions[name]))) return false;
   }
   return true;

@@ -153,7 +153,7 @@ TEST(SourceRules, FilesBeginWithWhatTheyAreFor) {
 
 // ----------------------------------------------------------------------------------------------- constants
 
-TEST(SourceRules, DISABLED_ConstantsOfNamespacesAreNamedAlike) {
+TEST(SourceRules, ConstantsOfNamespacesAreNamedAlike) {
   const std::regex constant(
       "(^|\n)(inline |static )*constexpr [^(={;]*\\b([A-Za-z_]\\w*)(\\[[^\\]]*\\])* ?[={]");
   const std::regex name("k[A-Z][A-Za-z0-9]*");

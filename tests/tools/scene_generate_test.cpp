@@ -115,33 +115,33 @@ TEST(SceneGenerate, UnknownNameIsAnErrorWithAHint) {
 
 TEST(SceneGenerate, SphereHasItsStatedMeasures) {
   const Scene scene = load_scene(resource_root() / "assets/scenes/sphere_plane.glb");
-  const glm::dvec3 centre(sphere_plane::sphere_centre[0], sphere_plane::sphere_centre[1],
-                          sphere_plane::sphere_centre[2]);
+  const glm::dvec3 centre(sphere_plane::kSphereCentre[0], sphere_plane::kSphereCentre[1],
+                          sphere_plane::kSphereCentre[2]);
   for (const Mesh& mesh : scene.meshes) {
     if (mesh.name != "sphere") continue;
     for (const glm::vec3& p : mesh.positions)
-      ASSERT_NEAR(glm::length(glm::dvec3(p) - centre), sphere_plane::sphere_radius, std::sqrt(3.0) * 0x1p-17);
+      ASSERT_NEAR(glm::length(glm::dvec3(p) - centre), sphere_plane::kSphereRadius, std::sqrt(3.0) * 0x1p-17);
     for (size_t i = 0; i < mesh.indices.size(); i += 3) {  // the middle of a face is its deepest point
       const glm::dvec3 middle =
           (glm::dvec3(mesh.positions[mesh.indices[i]]) + glm::dvec3(mesh.positions[mesh.indices[i + 1]]) +
            glm::dvec3(mesh.positions[mesh.indices[i + 2]])) /
           3.0;
       ASSERT_GT(glm::length(middle - centre),
-                sphere_plane::sphere_radius * (1.0 - sphere_plane::tessellation_error));
+                sphere_plane::kSphereRadius * (1.0 - sphere_plane::kTessellationError));
     }
   }
-  EXPECT_EQ(scene.lights[0].area->width, sphere_plane::light_side);
+  EXPECT_EQ(scene.lights[0].area->width, sphere_plane::kLightSide);
 }
 
 TEST(SceneGenerate, SquareAndLightHaveTheirStatedMeasures) {
   const Scene scene = load_scene(resource_root() / "assets/scenes/square_plane.glb");
   const Light& light = scene.lights[0];
-  EXPECT_EQ(glm::dvec3(light.world_from_light[3]), glm::dvec3(0, square_plane::light_height, 0));
+  EXPECT_EQ(glm::dvec3(light.world_from_light[3]), glm::dvec3(0, square_plane::kLightHeight, 0));
   EXPECT_NEAR(glm::dot(glm::dvec3(light.world_from_light[0]), glm::dvec3(1, 0, 0)), 1.0, 1e-12);
   EXPECT_NEAR(glm::dot(glm::dvec3(light.world_from_light[1]), glm::dvec3(0, 0, -1)), 1.0, 1e-12);
-  EXPECT_EQ(light.area->width, square_plane::light_side);
-  EXPECT_EQ(scene.bounds.max.y, square_plane::blocker_height);
-  EXPECT_EQ(scene.bounds.max.x, square_plane::ground_half);
+  EXPECT_EQ(light.area->width, square_plane::kLightSide);
+  EXPECT_EQ(scene.bounds.max.y, square_plane::kBlockerHeight);
+  EXPECT_EQ(scene.bounds.max.x, square_plane::kGroundHalf);
 }
 
 TEST(SceneInfo, TellsWhatMoves) {
@@ -160,23 +160,23 @@ TEST(SceneGenerate, AreaShapesHaveTheirStatedMeasures) {
   namespace s = area_shapes;
   const Scene scene = load_scene(resource_root() / "assets/scenes/area_shapes.glb");
   ASSERT_EQ(scene.lights.size(), 5u);
-  const double disc = 2 * s::disc_radius, sphere = 2 * s::sphere_radius;
+  const double disc = 2 * s::kDiscRadius, sphere = 2 * s::kSphereRadius;
   std::vector<glm::dvec2> outline;
-  for (const auto& p : s::polygon) outline.emplace_back(p[0], p[1]);
-  const AreaLight areas[] = {{Shape::rectangle, s::rectangle_width, s::rectangle_height, {}, {}},
+  for (const auto& p : s::kPolygon) outline.emplace_back(p[0], p[1]);
+  const AreaLight areas[] = {{Shape::rectangle, s::kRectangleWidth, s::kRectangleHeight, {}, {}},
                              {Shape::disc, disc, disc, {}, {}},
                              {Shape::sphere, sphere, sphere, {}, {}},
                              polygon_light(outline),
-                             {Shape::rectangle, s::window_side, s::window_side, {}, 0}};
+                             {Shape::rectangle, s::kWindowSide, s::kWindowSide, {}, 0}};
   for (size_t i = 0; i < 5; ++i) {
     const Light& light = scene.lights[i];
     EXPECT_EQ(*light.area, areas[i]) << light.name;
     EXPECT_EQ(glm::dvec3(light.world_from_light[3]),
-              glm::dvec3(s::lights[i][0], s::light_height, s::lights[i][1]));
+              glm::dvec3(s::kLights[i][0], s::kLightHeight, s::kLights[i][1]));
     EXPECT_NEAR(light.world_from_light[0].x, 1.0, 1e-12);
     EXPECT_NEAR(light.world_from_light[1].z, -1.0, 1e-12);
   }
-  const double half = 0.25 * s::window_side;  // one diagonal of panes is black
+  const double half = 0.25 * s::kWindowSide;  // one diagonal of panes is black
   EXPECT_EQ(emission_at(scene, areas[4], {half, half}), glm::dvec3(0.0));
   EXPECT_EQ(emission_at(scene, areas[4], {-half, -half}), glm::dvec3(0.0));
   EXPECT_EQ(emission_at(scene, areas[4], {-half, half}).r, 1.0);
@@ -188,13 +188,13 @@ TEST(SceneGenerate, SunAndLampHaveTheirStatedSizes) {
   const Scene scene = load_scene(resource_root() / "assets/scenes/sun_and_lamp.glb");
   ASSERT_EQ(scene.lights.size(), 2u);
   const Light &sun = scene.lights[0], &lamp = scene.lights[1];
-  EXPECT_NEAR(angular_diameter(*sun.area) * 180 / std::acos(-1.0), s::sun_degrees, 1e-12);
-  const glm::dvec3 direction(s::sun_direction[0], s::sun_direction[1], s::sun_direction[2]);
+  EXPECT_NEAR(angular_diameter(*sun.area) * 180 / std::acos(-1.0), s::kSunDegrees, 1e-12);
+  const glm::dvec3 direction(s::kSunDirection[0], s::kSunDirection[1], s::kSunDirection[2]);
   EXPECT_NEAR(glm::dot(glm::dvec3(sun.world_from_light[2]), glm::normalize(direction)), -1, 1e-12);
   EXPECT_EQ(lamp.type, LightType::point);
   EXPECT_EQ(*lamp.area,
-            (AreaLight{AreaLight::Shape::sphere, 2 * s::lamp_radius, 2 * s::lamp_radius, {}, {}}));
-  EXPECT_EQ(glm::dvec3(lamp.world_from_light[3]), glm::dvec3(s::lamp[0], s::lamp[1], s::lamp[2]));
+            (AreaLight{AreaLight::Shape::sphere, 2 * s::kLampRadius, 2 * s::kLampRadius, {}, {}}));
+  EXPECT_EQ(glm::dvec3(lamp.world_from_light[3]), glm::dvec3(s::kLamp[0], s::kLamp[1], s::kLamp[2]));
   const std::string text = describe_scene(scene);
   EXPECT_NE(text.find(", angular diameter 0.53 degrees\n"), std::string::npos) << text;
   EXPECT_NE(text.find(", area: sphere of radius 0.2\n"), std::string::npos) << text;

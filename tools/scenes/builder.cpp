@@ -13,11 +13,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double grid = 65536.0;
-constexpr int array_buffer = 34962, element_buffer = 34963, type_float = 5126, type_short = 5123,
-              type_int = 5125;
+constexpr double kGrid = 65536.0;
+constexpr int kArrayBuffer = 34962, kElementBuffer = 34963, kTypeFloat = 5126, kTypeShort = 5123,
+              kTypeInt = 5125;
 
-float on_grid(double value) { return static_cast<float>(std::round(value * grid) / grid) + 0.0f; }
+float on_grid(double value) { return static_cast<float>(std::round(value * kGrid) / kGrid) + 0.0f; }
 double rounded(double value) { return std::round(value * 1e9) / 1e9 + 0.0; }
 Json to_json(const glm::dvec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
 
@@ -108,7 +108,7 @@ struct Builder::Impl {
       data.insert(data.end(), {p.x, p.y, p.z});
     }
     const size_t result =
-        accessor(view(data.data(), data.size() * 4, array_buffer), type_float, values.size(), "VEC3");
+        accessor(view(data.data(), data.size() * 4, kArrayBuffer), kTypeFloat, values.size(), "VEC3");
     if (with_bounds) {
       document["accessors"][result]["min"] = {low.x, low.y, low.z};
       document["accessors"][result]["max"] = {high.x, high.y, high.z};
@@ -119,16 +119,16 @@ struct Builder::Impl {
   size_t coordinates(const std::vector<glm::dvec2>& values) {
     std::vector<float> data;
     for (const glm::dvec2& v : values) data.insert(data.end(), {on_grid(v.x), on_grid(v.y)});
-    return accessor(view(data.data(), data.size() * 4, array_buffer), type_float, values.size(), "VEC2");
+    return accessor(view(data.data(), data.size() * 4, kArrayBuffer), kTypeFloat, values.size(), "VEC2");
   }
 
   size_t triangles(const Shape& shape) {
     if (shape.positions.size() < 65535) {
       const std::vector<uint16_t> small(shape.indices.begin(), shape.indices.end());
-      return accessor(view(small.data(), small.size() * 2, element_buffer), type_short, small.size(),
+      return accessor(view(small.data(), small.size() * 2, kElementBuffer), kTypeShort, small.size(),
                       "SCALAR");
     }
-    return accessor(view(shape.indices.data(), shape.indices.size() * 4, element_buffer), type_int,
+    return accessor(view(shape.indices.data(), shape.indices.size() * 4, kElementBuffer), kTypeInt,
                     shape.indices.size(), "SCALAR");
   }
 
@@ -270,10 +270,10 @@ void Builder::move(const std::string& node, const Motion& motion) {
   for (const glm::dvec4& v : motion.values)
     for (int i = 0; i < components; ++i) values.push_back(on_grid(v[i]));
   const size_t input =
-      impl_->accessor(impl_->view(times.data(), times.size() * 4, 0), type_float, times.size(), "SCALAR");
+      impl_->accessor(impl_->view(times.data(), times.size() * 4, 0), kTypeFloat, times.size(), "SCALAR");
   document["accessors"][input]["min"] = {times.front()};  // glTF asks for both
   document["accessors"][input]["max"] = {times.back()};
-  const size_t output = impl_->accessor(impl_->view(values.data(), values.size() * 4, 0), type_float,
+  const size_t output = impl_->accessor(impl_->view(values.data(), values.size() * 4, 0), kTypeFloat,
                                         motion.values.size(), components == 4 ? "VEC4" : "VEC3");
   if (!document.contains("animations"))
     document["animations"] = Json::array({{{"channels", Json::array()}, {"samplers", Json::array()}}});

@@ -7,7 +7,7 @@
 namespace gnomon::generate {
 namespace {
 
-constexpr double half_side = 120.0;
+constexpr double kHalfSide = 120.0;
 
 double height(double x, double z) {
   return 5.0 * std::sin(0.035 * x + 0.6) * std::cos(0.041 * z - 0.4) + 2.2 * std::sin(0.09 * x - 0.05 * z) +
@@ -16,7 +16,7 @@ double height(double x, double z) {
 }
 
 glm::dvec3 terrain(double u, double v) {
-  const double x = half_side * (2 * u - 1), z = half_side * (1 - 2 * v);
+  const double x = kHalfSide * (2 * u - 1), z = kHalfSide * (1 - 2 * v);
   return {x, height(x, z), z};
 }
 

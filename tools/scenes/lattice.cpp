@@ -8,18 +8,18 @@
 namespace gnomon::generate {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;
 
 // A barrel vault that also bends along its length.
 glm::dvec3 vault(double u, double v) {
-  const double angle = pi * (1.0 - u), bend = (v - 0.5) * 1.5;
-  const double radius = 3.0 - 0.25 * std::cos(2 * pi * v);
+  const double angle = kPi * (1.0 - u), bend = (v - 0.5) * 1.5;
+  const double radius = 3.0 - 0.25 * std::cos(2 * kPi * v);
   const double side = radius * std::cos(angle) + 9.0;
   return {side * std::cos(bend) - 9.0, radius * std::sin(angle), -side * std::sin(bend)};
 }
 
 glm::dvec3 ring(double u, double v) {
-  const double around = 2 * pi * u, across = 2 * pi * v;
+  const double around = 2 * kPi * u, across = 2 * kPi * v;
   const double r = 1.5 + 0.55 * std::cos(across);
   return {r * std::cos(around), r * std::sin(around), 0.55 * std::sin(across)};
 }

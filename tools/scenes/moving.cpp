@@ -8,17 +8,17 @@
 namespace gnomon::generate {
 namespace {
 
-constexpr double period = 2.0;  // seconds
-constexpr int keys = 24;        // of a period; the last one is the first again
+constexpr double kPeriod = 2.0;  // seconds
+constexpr int kKeys = 24;        // of a period; the last one is the first again
 
 // One key frame at each of `keys` + 1 places, from phase 0 to 1.
 template <class Place>
 Motion motion(const char* property, Place place) {
   Motion result;
   result.property = property;
-  for (int i = 0; i <= keys; ++i) {
-    const double phase = static_cast<double>(i) / keys;
-    result.times.push_back(phase * period);
+  for (int i = 0; i <= kKeys; ++i) {
+    const double phase = static_cast<double>(i) / kKeys;
+    result.times.push_back(phase * kPeriod);
     result.values.push_back(place(phase));
   }
   return result;

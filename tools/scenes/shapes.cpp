@@ -11,7 +11,7 @@
 namespace gnomon::generate {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;
 
 glm::dvec3 patch_normal(const Patch& patch, double u, double v) {
   const double h = 1e-4;
@@ -158,7 +158,7 @@ uint32_t Random::next() {
 double Random::in(double low, double high) { return low + (high - low) * (next() * 0x1p-32); }
 
 glm::dmat3 turn(double angle, const glm::dvec3& axis) {
-  return glm::dmat3(glm::rotate(glm::dmat4(1.0), angle / 180 * pi, axis));
+  return glm::dmat3(glm::rotate(glm::dmat4(1.0), angle / 180 * kPi, axis));
 }
 
 void add_box(Shape& shape, const glm::dvec3& centre, const glm::dvec3& half, const glm::dmat3& rotation) {
@@ -181,7 +181,7 @@ void add_cylinder(Shape& shape, const glm::dvec3& base, const glm::dvec3& top, d
   const glm::dvec3 y = glm::cross(axis, x);
   const double slope = (base_radius - top_radius) / glm::length(top - base);
   const auto out = [&](int i) {
-    const double angle = 2 * pi * (i % sides) / sides;
+    const double angle = 2 * kPi * (i % sides) / sides;
     return x * std::cos(angle) + y * std::sin(angle);
   };
   const uint32_t first = static_cast<uint32_t>(shape.positions.size());

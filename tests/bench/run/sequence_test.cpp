@@ -57,7 +57,7 @@ TEST(PixelsBefore, AStillCameraKeepsThem) {
   before.depth[7] = INFINITY;
   before.position[2] = {99, 99, -99};  // something else was there
   const auto pixels = pixels_before(now, at(0), before, at(0));
-  for (uint32_t i = 0; i < 12; ++i) EXPECT_EQ(pixels[i], i == 5 || i == 7 ? not_seen_before : i) << i;
+  for (uint32_t i = 0; i < 12; ++i) EXPECT_EQ(pixels[i], i == 5 || i == 7 ? kNotSeenBefore : i) << i;
 }
 
 // The camera goes right by two pixels of the wall: what is at x now was at x + 2.
@@ -69,7 +69,7 @@ TEST(PixelsBefore, AMovingCameraFindsThePoint) {
   const auto pixels = pixels_before(now, to, before, from);
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x)
-      EXPECT_EQ(pixels[y * width + x], x + 2 < width ? y * width + x + 2 : not_seen_before) << x << " " << y;
+      EXPECT_EQ(pixels[y * width + x], x + 2 < width ? y * width + x + 2 : kNotSeenBefore) << x << " " << y;
 }
 
 TEST(PixelsBefore, AnotherSurfaceIsNoMatch) {
@@ -79,9 +79,9 @@ TEST(PixelsBefore, AnotherSurfaceIsNoMatch) {
   Reference nearer = wall(from, width, height), tilted = nearer;
   for (glm::vec3& p : nearer.position) p *= 0.99f;  // 1 % before the wall
   for (glm::vec3& n : tilted.normal) n = {0.6f, 0, 0.8f};
-  EXPECT_EQ(pixels_before(now, to, nearer, from)[20], not_seen_before);
-  EXPECT_EQ(pixels_before(now, to, tilted, from)[20], not_seen_before);
-  EXPECT_EQ(pixels_before(now, to, empty(width, height), from)[20], not_seen_before);
+  EXPECT_EQ(pixels_before(now, to, nearer, from)[20], kNotSeenBefore);
+  EXPECT_EQ(pixels_before(now, to, tilted, from)[20], kNotSeenBefore);
+  EXPECT_EQ(pixels_before(now, to, empty(width, height), from)[20], kNotSeenBefore);
   EXPECT_EQ(pixels_before(now, to, wall(from, width, height), from)[20], 20u);
 }
 

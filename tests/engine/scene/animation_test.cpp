@@ -204,7 +204,7 @@ TEST(Animation, MirroredInstancesFollow) {
   EXPECT_GT(glm::determinant(glm::dmat3(pose_at(turned, 0).instances[0])), 0);
   EXPECT_LT(glm::determinant(glm::dmat3(pose_at(turned, 1).instances[0])), 0);
   const glm::dmat4 flat = pose_at(turned, 0.5).instances[0];  // through 0: still with an inverse
-  EXPECT_NEAR(std::abs(glm::determinant(glm::dmat3(flat))), smallest_scale, 1e-9);
+  EXPECT_NEAR(std::abs(glm::determinant(glm::dmat3(flat))), kSmallestScale, 1e-9);
 }
 
 TEST(Animation, OddChannelsAreToldAndLeftOut) {

@@ -86,7 +86,7 @@ TEST(AreaLight, OutlinesThatCannotBeUsedSayWhy) {
   const double nan = std::nan("");
   const std::pair<std::vector<glm::dvec2>, const char*> cases[] = {
       {{{0, 0}, {1, 0}}, "2 corners"},
-      {std::vector<glm::dvec2>(most_corners + 1), "corners"},
+      {std::vector<glm::dvec2>(kMostCorners + 1), "corners"},
       {{{0, 0}, {1, 0}, {0, nan}}, "finite"},
       {{{-1, -1}, {1, -1}, {1, -1}, {0, 1}}, "coincide"},
       {{{-1, -1}, {1, -1}, {0, 1}, {-1, -1}}, "coincide"},  // closed twice

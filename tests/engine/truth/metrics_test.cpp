@@ -223,7 +223,7 @@ TEST(Flicker, IsTheChangeOfTheErrorWhereAPointIsSeenTwice) {
   const std::vector<float> result_before = {0, 0, 1, 0.5f}, reference_before = {0, 0, 0.5f, 0};
   std::vector<uint8_t> domain = {0, 0, 0, 0};
   const std::vector<uint8_t> all = domain;
-  const std::vector<uint32_t> before = {2, not_seen_before, 2, 3};
+  const std::vector<uint32_t> before = {2, kNotSeenBefore, 2, 3};
   const auto value = [&] {
     return flicker({result, reference, domain}, {result_before, reference_before, all}, before);
   };

@@ -420,8 +420,8 @@ TEST(ReferenceArea, GeneratedShapesAgreeWithBruteForce) {
       if (std::isinf(r.depth[k]) || p.y > 0.5) continue;
       double seen = 0;
       for (const Part& part : parts) {
-        const glm::dvec3 q = p + (part.place - p) * (s::blocker_height / s::light_height);
-        if (std::max(std::abs(q.x), std::abs(q.z)) > s::blocker_half) seen += part.weight;
+        const glm::dvec3 q = p + (part.place - p) * (s::kBlockerHeight / s::kLightHeight);
+        if (std::max(std::abs(q.x), std::abs(q.z)) > s::kBlockerHalf) seen += part.weight;
       }
       if (seen == 0 || seen == all) continue;
       ++penumbra;

@@ -136,7 +136,7 @@ TEST_F(DistanceTransform, JumpFloodingIsNearlyExactAndItsVariantsImproveIt) {
   EXPECT_LE(error("jfa_plus_one").wrong, jfa.wrong);
   EXPECT_LT(squared.wrong, jfa.wrong);
   const Image empty(33, 20, {"Y"});
-  for (const uint32_t site : transform(empty, {.algorithm = "jump_flooding"})) ASSERT_EQ(site, no_site);
+  for (const uint32_t site : transform(empty, {.algorithm = "jump_flooding"})) ASSERT_EQ(site, kNoSite);
 }
 
 // Macedo 2018, ch. 4.2.2: pixels that differ from one of their eight neighbours inside the image.
@@ -275,7 +275,7 @@ TEST_F(DistanceTransform, DepthTellsShadowEdgesFromDepthEdges) {
   uint64_t sites = 0, candidates = 0;
   for (size_t i = 0; i < run.nearest.size(); ++i) {
     candidates += all.data[i] != 0;
-    if (run.nearest[i] == no_site || squared_distance(run.nearest, i, 200) != 0) continue;
+    if (run.nearest[i] == kNoSite || squared_distance(run.nearest, i, 200) != 0) continue;
     ++sites;
     EXPECT_NE(all.data[i], 0.0f);
     EXPECT_GT(run.depth.data[i], 0.0f) << "the background is no site";

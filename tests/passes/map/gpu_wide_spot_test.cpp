@@ -19,7 +19,7 @@ Scene lit_by(LightType type) {
   Light lamp = light(type, {0.3, 3, -0.2}, {0.3, 0, -0.2});
   lamp.inner_cone = 0;
   lamp.outer_cone = 0.5 * std::numbers::pi;
-  lamp.map_fov = widest_map;
+  lamp.map_fov = kWidestMap;
   return square_over_plane(lamp);
 }
 
