@@ -28,6 +28,7 @@ struct Options {
   bool plan = false;
 };
 
+// Without a device.
 Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
   const Extent size = parse_size(options.size);
   const Camera& camera = camera_of(scene, options.camera);
@@ -41,6 +42,7 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
 
 // A frame as it is, and one with everything kept.
 struct Measured {
+  std::unique_ptr<Renderer> lean;
   std::string device;
   double lean_ms = 0, full_ms = 0;                     // of a frame
   std::map<std::string, double> lean_pass, full_pass;  // GPU ms of each pass, all of its iterations and parts
@@ -69,21 +71,23 @@ Measured measure(const std::shared_ptr<const Scene>& scene, const Graph& graph, 
   settings.width = size.width;
   settings.height = size.height;
   settings.camera = options.camera;
-  Renderer lean(device, scene, graph, settings);
+  auto lean = std::make_unique<Renderer>(device, scene, graph, settings);
   settings.keep_all = true;
   Renderer full(device, scene, graph, settings);
-  const auto lean_subject = subject_of(lean), full_subject = subject_of(full);
+  const auto lean_subject = subject_of(*lean), full_subject = subject_of(full);
   const std::vector<Samples> samples =
       run_rounds({lean_subject.get(), full_subject.get()}, {2, options.repeat, options.repeat});
   for (const Samples& one : samples)
     if (!one.error.empty()) fail(one.error);
-  left_out = lean.left_out();
-  return {device_info(*device).name,
+  left_out = lean->left_out();
+  const MemoryUse lean_memory = lean->memory();
+  return {std::move(lean),
+          device_info(*device).name,
           median(samples[0].frame_ms()),
           median(samples[1].frame_ms()),
           pass_times(samples[0]),
           pass_times(samples[1]),
-          lean.memory(),
+          lean_memory,
           full.memory()};
 }
 
@@ -130,11 +134,13 @@ void explain_command(const Options& options) {
   parse_size(options.size);
   const Graph graph = load_graph(find_graph(options.graph), set);
   const auto scene = open_scene(options.scene, options.light_scale);
-  const Plan plan = plan_of(*scene, graph, options);
   print("{} on {}, {}\n", graph.name, scene->name, options.size);
   std::vector<LeftOutPass> left_out;
   std::optional<Measured> measured;
   if (options.repeat > 0) measured = measure(scene, graph, options, left_out);
+  Plan without_device;
+  if (!measured) without_device = plan_of(*scene, graph, options);
+  const Plan& plan = measured ? measured->lean->plan() : without_device;
   print_passes(plan, left_out, measured ? &*measured : nullptr);
   if (options.plan) print_lines(stdout, "\n" + to_text(plan));
   if (measured)

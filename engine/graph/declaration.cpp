@@ -83,6 +83,13 @@ Port make_port(std::string name, Direction direction, Access access, bool is_buf
 
 }  // namespace
 
+void Declaration::constant(std::string name, Value value) {
+  if (!std::holds_alternative<int64_t>(value) && !std::holds_alternative<double>(value))
+    fail("a pass declares a constant '" + name + "' that is no number");
+  const auto [at, fresh] = constants_.emplace(std::move(name), value);
+  if (!fresh && at->second != value) fail("a pass declares a constant '" + at->first + "' of two values");
+}
+
 bool Declaration::flag(std::string name, bool standard, std::string help) {
   check_new(specs_, name, "parameter");
   bool result = standard;

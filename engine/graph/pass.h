@@ -150,6 +150,10 @@ class Declaration {
   // A declared parameter's value is refused for what its range cannot say: "'kernel' is 4: must be odd".
   void refuse(std::string_view name, std::string_view must_be);
 
+  // A number that the pass shares with its shaders: they see `const int` or `const float NAME = value`, by
+  // its type. Declared again it must be the same.
+  void constant(std::string name, Value value);
+
   // Image ports. `array`: GLSL sees an array with layers. Return the connected image's shape (listing: 1x1).
   ImageShape input(std::string name, Access access, bool array, std::string help);
   std::optional<ImageShape> optional_input(std::string name, Access access, bool array, std::string help);
@@ -209,6 +213,7 @@ class Declaration {
   const std::string& cite() const { return cite_; }
   const std::vector<Port>& ports() const { return ports_; }
   const std::vector<ParamSpec>& param_specs() const { return specs_; }
+  const Values& constants() const { return constants_; }
   const Port* find(std::string_view port) const;
   // Values given but not declared are for the caller to report; out-of-range or mistyped ones are collected
   // here as sentences ("'size' is 0: must be in 1..16384 texels").
@@ -224,7 +229,7 @@ class Declaration {
   using Offers = std::map<std::string, Behind, std::less<>>;
   Setting setting_;
   std::map<std::string, Offers, std::less<>> offers_;  // of outputs that may yet be declared
-  Values given_, resolved_;
+  Values given_, resolved_, constants_;
   Inputs inputs_;
   PassKind kind_ = PassKind::compute;
   bool darkens_ = false;

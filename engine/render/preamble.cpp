@@ -130,6 +130,9 @@ std::string light_kind_text(const std::vector<Light>& lights) {
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs) {
   // Constants rather than loads: drivers unroll loops over them and keep loads in those loops uniform.
   std::string text = fmt::format("#define LIGHT_COUNT {}\n", declaration.setting().lights);
+  for (const auto& [name, value] : declaration.constants())
+    text += fmt::format("const {} {} = {};\n", std::holds_alternative<double>(value) ? "float" : "int", name,
+                        to_string(value));
   const auto shown = shader_ports(declaration);
   for (const ShaderPort& port : shown) {
     text += fmt::format("#define HAS_{} 1\n", upper(port.port->name));

@@ -26,7 +26,7 @@ uint32_t storage_levels(const Port& port);
 // Text: one declaration per port, named as the port. Sampled images `x` get `x_at(ivec2)` (arrays:
 // `x_at(ivec2, int layer)`), which read the single texel of an input that was folded to a constant; arrays
 // with mip levels `x_at(ivec2, int layer, int level)` too. Integer and number parameters are `params.name`. A
-// connected buffer `x` has X_COUNT elements; LIGHT_COUNT is the scene's.
+// connected buffer `x` has X_COUNT elements; LIGHT_COUNT is the scene's. The pass' constants come first.
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs);
 
 // NO_DIRECTIONAL_LIGHTS or ALL_DIRECTIONAL_LIGHTS where all lights are of one kind, so that shaders leave out

@@ -349,7 +349,7 @@ std::map<std::string, double> Renderer::facts() const {
     for (const auto& [name, value] : node.pass->figures()) all[node.id + "." + name] = value;
   return all;
 }
-std::string Renderer::plan_text() const { return to_text(impl_->plan); }
+const Plan& Renderer::plan() const { return impl_->plan; }
 std::vector<std::string> Renderer::passes() const {
   std::vector<std::string> ids;
   for (const PlanNode& node : impl_->plan.nodes) ids.push_back(node.id);

@@ -18,6 +18,8 @@
 
 namespace gnomon {
 
+struct Plan;
+
 enum class TimingMode {
   none,        // no timestamps at all: what a frame costs
   overlapped,  // stamps at pass boundaries, barriers as planned
@@ -70,7 +72,7 @@ class Renderer {
   std::vector<LeftOutPass> left_out() const;    // passes, then parts of those that run
   std::vector<std::string> warnings() const;    // passes' own ("open mesh 'leaves' in shadow_volumes")
   std::map<std::string, double> facts() const;  // passes' own figures: "shade.bias_world", ...
-  std::string plan_text() const;
+  const Plan& plan() const;  // as compiled for the scene
   // Names of passes in execution order.
   std::vector<std::string> passes() const;
 

@@ -5,6 +5,7 @@
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
 #include "engine/scene/scene.h"
+#include "passes/distance/distance_transform_ports.h"
 #include "passes/distance/penumbra_width.h"
 #include "passes/technique.h"
 
@@ -18,6 +19,7 @@ class DistancePenumbra : public Pass {
   void declare(Declaration& d) const override {
     d.summary("Turns the distance to the hard shadow's silhouette into penumbra.");
     d.cite("Macedo 2018, eq. 4.3; Macedo and Apolinario 2017, eq. 1");
+    distance_transform::declare_units(d);
     d.input("nearest", Access::sampled, true, "nearest silhouette pixel, as distance_transform gives it");
     d.input_buffer("tiles", Access::storage_read,
                    "tiles of 16x16 pixels that have silhouette pixels in reach");

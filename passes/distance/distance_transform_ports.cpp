@@ -75,7 +75,14 @@ uint32_t stripe_words(Extent size) {
   return uint32_t(std::clamp<uint64_t>(words, 1, divide_up(size.height, kWord)));
 }
 
+void declare_units(Declaration& d) {
+  d.constant("WORD", int64_t{kWord});
+  d.constant("CHUNK", int64_t{kChunk});
+  d.constant("TILE", int64_t{kTile});
+}
+
 void declare_ports(Declaration& d) {
+  declare_units(d);
   d.summary("Finds for every pixel the nearest site: a Euclidean feature transform.");
   d.cite("Cao et al. 2010; Meijster et al. 2000; Rong and Tan 2006; sites: Macedo 2018, ch. 4.2.2");
   const ImageShape source =

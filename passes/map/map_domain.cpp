@@ -15,11 +15,11 @@
 #include "engine/render/render_settings.h"
 #include "engine/scene/area_light.h"
 #include "engine/scene/scene.h"
+#include "passes/map/map_traits.h"
 
 namespace gnomon {
 namespace {
 
-constexpr double kSteepSlope = 20;         // MAX_SLOPE of shaders/glsl/lib/receiver_plane.glsl
 constexpr double kMostGrazed = 0.5;        // share of the lit surface beyond which a light is warned of
 constexpr double kMostOfMap = 0.1;         // share of the map's side that a filter may be wide
 constexpr uint32_t kLeastUsefulSide = 16;  // texels: below, shadows of the ordinary stability scene are lost
@@ -123,7 +123,7 @@ namespace {
 
 // Slope beyond which a map of `side` texels, foreshortened by it, tells as little as one of
 // kLeastUsefulSide.
-double most_slope(uint32_t side) { return std::clamp(double(side) / kLeastUsefulSide, 1.0, kSteepSlope); }
+double most_slope(uint32_t side) { return std::clamp(double(side) / kLeastUsefulSide, 1.0, kSteepestSlope); }
 
 void warn_about_light(Environment& e, const Light& light, uint32_t side, MapsFrom from) {
   constexpr double degrees = 180 / std::numbers::pi;
@@ -181,7 +181,7 @@ void warn_about_rise(Environment& e, uint32_t side) {
     const double texel = 2 * std::max(view.half_width, view.half_height) * middle / side;
     const double slope = kMostRise * (view.far - view.near) / (half_kernel * texel);
     const Light& light = e.scene().lights[view.light];
-    const double share = slope < kSteepSlope ? grazed_share(e.scene(), light, slope) : 0;
+    const double share = slope < kSteepestSlope ? grazed_share(e.scene(), light, slope) : 0;
     if (share <= kMostGrazed) continue;
     e.warn(
         fmt::format("{:.0f} % of what light '{}' shines on rises, within half a kernel of {:.0f} texels, "

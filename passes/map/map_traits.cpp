@@ -67,6 +67,7 @@ void refuse_what_is_no_depth(Declaration& d, const std::string& input) {
 
 DepthMapTraits declare_depth_map(Declaration& d) {
   DepthMapTraits t;
+  d.constant("MAX_SLOPE", kSteepestSlope);
   t.encoding = d.choice(map_trait::kEncoding, t.encoding, encodings(), kEncodingHelp);
   t.bias = d.choice(map_trait::kBias, t.bias, bias_methods(), kBiasHelp);
   set_bias_defaults(t);
@@ -82,6 +83,7 @@ void set_depth_map(Declaration& d, const std::string& output, const DepthMapTrai
 }
 
 void read_encoding(Declaration& d, const std::string& input) {
+  d.constant("MAX_SLOPE", kSteepestSlope);
   refuse_what_is_no_depth(d, input);
   const std::string encoding = text_trait(d, input, map_trait::kEncoding, encodings().front());
   d.derived(input, choice(map_trait::kEncoding, encoding, encodings(), kEncodingHelp));
@@ -89,6 +91,7 @@ void read_encoding(Declaration& d, const std::string& input) {
 
 DepthMapTraits read_depth_map(Declaration& d, const std::string& input) {
   DepthMapTraits t;
+  d.constant("MAX_SLOPE", kSteepestSlope);
   refuse_what_is_no_depth(d, input);
   t.encoding = text_trait(d, input, map_trait::kEncoding, t.encoding);
   t.bias = text_trait(d, input, map_trait::kBias, t.bias);

@@ -28,6 +28,11 @@ inline constexpr const char* kGreatest = "greatest";
 inline constexpr const char* kPyramid = "pyramid";  // true: least and greatest depths of a map's blocks
 }  // namespace map_trait
 
+// Steepest slope that a receiver's plane is followed along, as a tangent: beyond, the plane is nearly edge-on
+// to the light and one texel covers more depth than any bias could (87 degrees). Shaders of passes that
+// declare or read a map of depth know it as MAX_SLOPE.
+inline constexpr double kSteepestSlope = 20;
+
 // How a map of depth was made and is to be compared with.
 struct DepthMapTraits {
   std::string encoding = "perspective", bias = "receiver_plane";

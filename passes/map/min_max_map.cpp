@@ -9,11 +9,12 @@
 namespace gnomon {
 namespace {
 
-constexpr uint32_t kBlock = 8;  // as in shaders/glsl/lib/min_max.glsl
+constexpr uint32_t kBlock = 8;  // texels a side; shaders: MIN_MAX_BLOCK
 
 }  // namespace
 
 void MinMaxMap::declare(Declaration& d, const ImageShape& shadow_map) {
+  d.constant("MIN_MAX_BLOCK", int64_t{kBlock});
   constexpr Access kBoth = Access::storage_read | Access::storage_write;
   const Extent blocks{divide_up(shadow_map.extent.width, kBlock),
                       divide_up(shadow_map.extent.height, kBlock)};

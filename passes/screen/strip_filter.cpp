@@ -12,13 +12,14 @@
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
 #include "engine/render/render_settings.h"
+#include "passes/distance/distance_transform_ports.h"
 
 namespace gnomon {
 namespace {
 
-// As in shaders/glsl/screen/strip_filter.glsl.
-constexpr uint32_t kCell = 8, kStrip = 8, kListGroup = 64;  // pixels; cells; invocations
-constexpr uint64_t kWord = 4;                               // bytes
+constexpr uint32_t kCell = 8, kStrip = 8;  // pixels; cells; shaders: CELL, STRIP
+constexpr uint32_t kListGroup = 64;        // invocations
+constexpr uint64_t kWord = 4;              // bytes
 constexpr uint64_t kAlongX = 0, kAlongY = 4, kReach = 8, kControlWords = 9;
 
 constexpr Access kList = Access::storage_read | Access::storage_write;
@@ -61,6 +62,9 @@ void warn_about_width(Environment& e) {
 }  // namespace
 
 void StripFilter::declare(Declaration& d) const {
+  d.constant("CELL", int64_t{kCell});
+  d.constant("STRIP", int64_t{kStrip});
+  distance_transform::declare_units(d);
   const ImageShape shape = d.inout("visibility", Access::storage_read | Access::storage_write, true,
                                    "what is filtered; a layer a light");
   d.optional_input_behind("views", "visibility", Access::uniform, "what the shadow map's layers show");

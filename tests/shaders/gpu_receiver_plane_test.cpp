@@ -44,6 +44,7 @@ struct Answer {
 };
 
 constexpr const char* kPlaneKernel = R"(
+const float MAX_SLOPE = 20.0;
 #include "lib/receiver_plane.glsl"
 layout(local_size_x = 64) in;
 struct Job { vec4 q, n; vec2 offset; float size, bias; uvec4 view_linear; };

@@ -1,5 +1,7 @@
 // The nearest site of a pixel, as the distance transforms store it, and the exact integer arithmetic that finds it. Pure
 // functions.
+//
+// Whoever includes this defines WORD, the pixels a word (int, 32).
 #ifndef GNOMON_DISTANCE_TRANSFORM
 #define GNOMON_DISTANCE_TRANSFORM
 
@@ -16,10 +18,8 @@ int square(int a) { return a * a; }
 // At most 2^29 for sides up to 16384: exact in 32 bits, as a float would not be.
 int squared_distance(ivec2 a, ivec2 b) { return square(a.x - b.x) + square(a.y - b.y); }
 
-// ---- sites of a column as bits: bit i of word w of a column stands for the pixel y = 32 w + i ----
+// ---- sites of a column as bits: bit i of word w of a column stands for the pixel y = WORD w + i ----
 
-const int WORD = 32;            // pixels a word
-const int CHUNK = 32;           // columns of a word of `kept` (distance_transform_prune)
 const int NONE_ABOVE = -0x4000; // rows further away than any in an image
 const int NONE_BELOW = 0x8000;
 

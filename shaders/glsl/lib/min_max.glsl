@@ -3,8 +3,6 @@
 #ifndef GNOMON_MIN_MAX
 #define GNOMON_MIN_MAX
 
-const int MIN_MAX_BLOCK = 8;  // side, texels
-
 // x: least, y: greatest depth.
 vec2 min_max_of(vec4 depths) {
   return vec2(min(min(depths.x, depths.y), min(depths.z, depths.w)), max(max(depths.x, depths.y), max(depths.z, depths.w)));

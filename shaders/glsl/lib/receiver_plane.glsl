@@ -5,14 +5,12 @@
 // costs one multiply-add, for spot, directional and point lights, cascades and warps alike. It is kept as depth - 1, counted from
 // the far distance, where floating point is finest: the perspective depth (3.6) of z is 1 + n (z - f) / ((f - n) z), (3.8) is
 // 1 + (z - f) / (f - n).
+//
+// Whoever includes this defines MAX_SLOPE, the steepest slope that a plane is followed along, as a tangent (float).
 #ifndef GNOMON_RECEIVER_PLANE
 #define GNOMON_RECEIVER_PLANE
 
 #include "light_view.glsl"
-
-// Steepest slope that a plane is followed along, as a tangent: beyond, the plane is nearly edge-on to the light and one
-// texel covers more depth than any bias could (87 degrees).
-const float MAX_SLOPE = 20.0;
 
 struct Receiver {
   vec2 texel;     // position in the map, texels

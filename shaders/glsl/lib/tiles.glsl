@@ -4,11 +4,12 @@
 // A list is a buffer of packed tiles in no particular order, and a buffer of four arguments: the workgroups (x, y, z) of an
 // indirect dispatch of one workgroup a tile, and the number of tiles. Workgroup g of n handles tile number tile_index(g, n), if there
 // is one.
+//
+// Whoever includes this defines TILE, a tile's side in pixels (int).
 #ifndef GNOMON_TILES
 #define GNOMON_TILES
 
-const int TILE = 16;              // side, pixels
-const uint TILE_ROW = 65535u;     // workgroups along x at most: what every device allows
+const uint TILE_ROW = 65535u;  // workgroups along x at most: what every device allows
 
 struct Tile {
   ivec2 origin;  // pixel

@@ -14,9 +14,8 @@
 
 layout(push_constant) uniform Push { float reference_depth; } push;  // world units
 
-const int CELL = 8;             // side of the squares whose content is classified, pixels
-const int STRIP = 8;            // cells along a strip; it is one cell wide
-const int LENGTH = STRIP * CELL;
+// A strip is STRIP cells long and one wide. The content of a cell, CELL pixels a side, is classified.
+const int LENGTH = STRIP * CELL;  // pixels
 const int MAX_HALF = 31;        // pixels that a filter reaches to each side at most
 
 // What a cell holds, as bits; none: it is as plain as its neighbours are.

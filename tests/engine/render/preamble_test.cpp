@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "engine/base/error.h"
 #include "engine/scene/scene.h"
 #include "engine/vulkan/shader.h"
 
@@ -150,4 +151,17 @@ TEST(Preamble, without_ports_and_parameters_tells_the_setting_alone) {
 }
 
 }  // namespace
+TEST(Preamble, constants_are_typed_and_declared_once) {
+  Declaration d;
+  d.constant("TILE", int64_t{16});
+  d.constant("LIMIT", 20.0);
+  d.constant("TILE", int64_t{16});
+  const std::string text = preamble(d, {});
+  expect_contains(text, "const int TILE = 16;\n");
+  expect_contains(text, "const float LIMIT = 20.0;\n");
+  EXPECT_EQ(text.find("TILE"), text.rfind("TILE"));
+  EXPECT_THROW(d.constant("TILE", int64_t{8}), Error);
+  EXPECT_THROW(d.constant("NAME", std::string("text")), Error);
+}
+
 }  // namespace gnomon

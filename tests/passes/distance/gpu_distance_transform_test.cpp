@@ -176,7 +176,8 @@ class MarkTiles : public Pass {
   }
   void prepare(Environment& e) override {
     const std::filesystem::path file = test::scratch_folder() / "mark_tiles.glsl";
-    write_text(file, R"(#include "lib/tiles.glsl"
+    write_text(file, R"(const int TILE = 16;
+#include "lib/tiles.glsl"
 layout(local_size_x = 16, local_size_y = 16) in;
 void main() {
   uint index = tile_index(gl_WorkGroupID, gl_NumWorkGroups);
