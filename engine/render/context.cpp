@@ -222,13 +222,14 @@ void Context::draw_scene(const ScenePipelines& pipelines, Cull cull,
                          const std::function<std::span<const LayerRun>(const Draw&)>& layers_of) {
   bind_geometry();
   for (const bool masked : {false, true}) {
-    const Pipeline& pipeline = masked ? pipelines.masked : pipelines.opaque;
-    bool bound = false;
+    const Pipeline* bound = nullptr;
     VkCullModeFlags current = VK_CULL_MODE_FLAG_BITS_MAX_ENUM;
     for (const Draw& d : scene_.draws()) {
       const std::span<const LayerRun> runs = layers_of(d);
+      const bool plain = d.plain && pipelines.plain.handle;
+      const Pipeline& pipeline = masked ? pipelines.masked : plain ? pipelines.plain : pipelines.opaque;
       if (d.alpha_masked != masked || !pipeline.handle || runs.empty()) continue;
-      if (!bound) bind(pipeline), bound = true;
+      if (bound != &pipeline) bind(pipeline), bound = &pipeline;
       const bool one_sided = cull != Cull::none && !d.double_sided;
       const bool back = (cull == Cull::material) != d.mirrored;  // a mirrored instance turns the winding over
       const VkCullModeFlags mode = !one_sided ? VK_CULL_MODE_NONE

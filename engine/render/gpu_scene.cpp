@@ -189,7 +189,8 @@ void GpuScene::upload_geometry() {
     const Material& material = scene_->materials[mesh.material];
     draws_.push_back({3 * first_triangle_[instance.mesh], uint32_t(mesh.indices.size()),
                       int32_t(first_vertex_[instance.mesh]), i, mesh.material, material.double_sided,
-                      material.alpha_masked, is_mirrored(instance.world_from_object), mesh.watertight});
+                      material.alpha_masked, is_mirrored(instance.world_from_object), mesh.watertight,
+                      !material.base_color_texture && mesh.colors.empty()});
   }
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   positions_ = upload_buffer(device_, bytes_of(positions), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kStorage);

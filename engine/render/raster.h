@@ -16,6 +16,7 @@ struct Draw {  // one instance of one mesh
   int32_t vertex_offset;
   uint32_t instance, material;
   bool double_sided, alpha_masked, mirrored, watertight;
+  bool plain;  // of one base colour: no texture, no vertex colours
 };
 
 struct ColorTarget {
@@ -44,6 +45,7 @@ enum class Cull {
 };
 struct ScenePipelines {
   Pipeline opaque, masked;  // masked: alpha-masked materials
+  Pipeline plain = {};      // opaque, of one base colour; none: drawn as the others
 };
 
 // Which layers each instance of the scene is drawn into.

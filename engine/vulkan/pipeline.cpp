@@ -93,10 +93,12 @@ VertexInput vertex_input(VertexLayout layout) {
   in.attributes.push_back({0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0});
   if (layout == VertexLayout::positions) return in;
   in.bindings.push_back({1, sizeof(VertexAttributes), VK_VERTEX_INPUT_RATE_VERTEX});
-  in.attributes.push_back({2, 1, VK_FORMAT_R32G32_SFLOAT, offsetof(VertexAttributes, uv)});
-  in.attributes.push_back({3, 1, VK_FORMAT_R16G16B16A16_UNORM, offsetof(VertexAttributes, color)});
-  if (layout == VertexLayout::masked) return in;
-  in.attributes.push_back({1, 1, VK_FORMAT_R16G16_SNORM, offsetof(VertexAttributes, normal)});
+  if (layout != VertexLayout::normals) {
+    in.attributes.push_back({2, 1, VK_FORMAT_R32G32_SFLOAT, offsetof(VertexAttributes, uv)});
+    in.attributes.push_back({3, 1, VK_FORMAT_R16G16B16A16_UNORM, offsetof(VertexAttributes, color)});
+  }
+  if (layout != VertexLayout::masked)
+    in.attributes.push_back({1, 1, VK_FORMAT_R16G16_SNORM, offsetof(VertexAttributes, normal)});
   return in;
 }
 

@@ -13,8 +13,9 @@ namespace gnomon {
 enum class VertexLayout {
   none,       // vertices come from gl_VertexIndex alone
   positions,  // location 0: vec3 position
-  masked,     // and location 2: uv, 3: colour: what an alpha mask needs
-  full,       // and location 1: octahedral normal, 2: uv, 3: colour
+  normals,    // and location 1: octahedral normal
+  masked,     // location 0, and location 2: uv, 3: colour: what an alpha mask needs
+  full,       // location 0 to 3: all of these
   references  // location 0: uvec2, from a buffer of the pass' own
 };
 enum class Blend { none, add, multiply };

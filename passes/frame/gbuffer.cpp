@@ -40,6 +40,12 @@ class GBuffer : public Pass {
     far_ = e.settings().reversed_z ? 0.0f : 1.0f;
     if (far_plane_cuts(e.scene(), e.gpu_scene().camera())) state.defines.emplace_back("FAR_PLANE", "1");
     pipelines_.opaque = e.raster(state);
+    if (!e.settings().keep_all) {
+      RasterState plain = state;
+      plain.layout = VertexLayout::normals;
+      plain.defines.emplace_back("PLAIN", "1");
+      pipelines_.plain = e.raster(plain);
+    }
     state.defines.emplace_back("MASKED", "1");
     pipelines_.masked = e.raster(state);
   }

@@ -1,5 +1,5 @@
 // G-buffer (Saito and Takahashi 1990): octahedral shading and geometric normals, albedo; depth is fixed-function.
-// Inputs as scene.vert.glsl has them.
+// Inputs as scene.vert.glsl has them. PLAIN: for draws of one base colour.
 #include "frame/frame.glsl"
 #include "lib/octahedral.glsl"
 #include "frame/pixel_state.glsl"
@@ -9,9 +9,11 @@ layout(location = 1) in vec3 in_normal;
 layout(location = 2) flat in vec4 in_base_color;
 layout(location = 3) flat in vec4 in_normal_columns[3];
 layout(location = 6) flat in uvec2 in_draw;
+#ifndef PLAIN
 layout(set = 2, binding = 0) uniform sampler2D base_color_texture;
 layout(location = 7) in vec2 in_uv;
 layout(location = 8) in vec4 in_color;
+#endif
 // Channels that somebody reads; each is defined as its location.
 #ifdef NORMAL
 layout(location = NORMAL) out vec2 out_normal;
@@ -37,7 +39,11 @@ void main() {
 #ifdef FAR_PLANE  // the projection's is infinitely far
   if (gl_FragCoord.w * frame.depth.z < 1.0) discard;
 #endif
+#ifdef PLAIN
+  vec4 color = in_base_color;
+#else
   vec4 color = in_base_color * in_color * texture(base_color_texture, in_uv);
+#endif
 #ifdef MASKED
   if (color.a < in_normal_columns[0].w) discard;
 #endif

@@ -1,6 +1,6 @@
 // Vertices of the scene for the camera. Shared by every pass that must meet the G-buffer's depth bit for bit. What is the same
 // for a whole draw comes as flat inputs, which software devices read once for a triangle, and storage buffers once for every
-// pixel.
+// pixel. PLAIN: for draws of one base colour.
 #include "frame/frame.glsl"
 #include "lib/octahedral.glsl"
 
@@ -12,10 +12,12 @@ layout(location = 1) out vec3 out_normal;
 layout(location = 2) flat out vec4 out_base_color;
 layout(location = 3) flat out vec4 out_normal_columns[3];  // against a mirrored instance's winding; w of the first: alpha cutoff
 layout(location = 6) flat out uvec2 out_draw;              // first triangle, 1 when double-sided
+#ifndef PLAIN
 layout(location = 2) in vec2 in_uv;
 layout(location = 3) in vec4 in_color;
 layout(location = 7) out vec2 out_uv;
 layout(location = 8) out vec4 out_color;
+#endif
 invariant gl_Position;
 
 void main() {
@@ -33,6 +35,8 @@ void main() {
   out_normal_columns[1] = columns[1];
   out_normal_columns[2] = columns[2];
   out_draw = uvec2(info.x, material.alpha.y != 0.0 ? 1u : 0u);
+#ifndef PLAIN
   out_uv = in_uv;
   out_color = in_color;
+#endif
 }
