@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,7 @@
 #include "engine/vulkan/shader.h"
 #include "tools/cli.h"
 #include "tools/print_run.h"
+#include "tools/render_export.h"
 #include "tools/render_frames.h"
 #include "tools/terminal.h"
 
@@ -79,7 +81,15 @@ Row asked_row(const RenderOptions& options, const RenderJob& job, const Device& 
 }
 
 int render_command(const RenderOptions& options) {
-  const RenderJob job = prepare(options);
+  RenderJob job = prepare(options);
+  std::vector<std::string> maps;
+  if (!options.export_folder.empty()) {
+    check_export_folder(options.export_folder);
+    maps = shadow_map_ports(job);
+    auto& captures = job.settings.captures;
+    for (const std::string& port : maps)
+      if (std::find(captures.begin(), captures.end(), port) == captures.end()) captures.push_back(port);
+  }
   const auto device = open_device(options.device);
   Renderer renderer(device, job.scene, job.graph, job.settings);
   Row row = asked_row(options, job, *device);
@@ -90,9 +100,15 @@ int render_command(const RenderOptions& options) {
   const RenderedImages images = measure(job, options, renderer, folder, row);
   describe_renderer(row, renderer);
   for (const std::string& warning : row.warnings) warn(warning);
+  const double seconds = job.frames > 0 ? (job.frames - 1) * job.settings.frame_seconds : 0.0;
   if (job.samples) {
     row.reference = RowReference{*job.samples};
-    row.error = error_of(job, images, job.frames > 0 ? (job.frames - 1) * job.settings.frame_seconds : 0.0);
+    row.error = error_of(job, images, seconds);
+  }
+  std::optional<OutputFolder> exported;
+  if (!options.export_folder.empty()) {
+    exported.emplace(options.export_folder);
+    write_export(*exported, job, renderer, images.visibility, maps, seconds);
   }
   if (row.nonfinite > 0)
     row.status = fmt::format("error: {} values of the output are not finite", row.nonfinite);
@@ -103,6 +119,7 @@ int render_command(const RenderOptions& options) {
   for (const auto& [file, image] : images.captured) write_exr(file, image);
   if (!options.json_file.empty()) write_text(options.json_file, run);
   folder.keep();
+  if (exported) exported->keep();
 
   print_run(row);
   print("  {}\n", out.string());
@@ -127,6 +144,12 @@ void add_options(CLI::App& command, RenderOptions& o) {
       ->type_name("NODE.PORT=FILE.exr")
       ->take_all();
   command.add_option("--out,-o", o.out, "folder for the images and run.json (default: out/SCENE-GRAPH)")
+      ->type_name("DIR");
+  command
+      .add_option(
+          "--export", o.export_folder,
+          "write depth, normal, albedo, position, shadow maps with their views, and the visibility of "
+          "technique and reference to this new folder")
       ->type_name("DIR");
   command.add_option("--json", o.json_file, "write run.json here as well")->type_name("FILE");
   command.add_option("--camera", o.camera, "index of the scene's camera")
@@ -182,6 +205,7 @@ Examples:
   gnomon render fence --graph shadow_mapping
   gnomon render pendulum --graph pcf --frames 60 --reference 0 --write-frames --out out/swing
   gnomon render robot.glb --graph rbsm_conservative --set shadow_map=512 --error --out out/robot
+  gnomon render fence -g shadow_mapping --export out/frame --reference 256
   gnomon render fence -g shadow_mapping --capture map.depth=map.exr --device lavapipe)");
   command->callback([options, &status] { status = render_command(*options); });
 }

@@ -18,7 +18,7 @@ namespace gnomon {
 struct RenderOptions {
   std::string scene, graph, size = "1280x720", camera_z = "reversed", reference = "none";
   std::vector<std::string> set, capture;
-  std::filesystem::path out, json_file;
+  std::filesystem::path out, json_file, export_folder;
   DeviceFlags device;
   uint32_t camera = 0, repeat = 5, warmup = 2, frames = 0;
   double fps = 30, light_scale = 1;

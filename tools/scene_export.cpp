@@ -105,6 +105,14 @@ class Writer {
   }
 
   static Json camera_json(const Camera& camera) {
+    if (camera.span) {  // its far plane is not optional
+      constexpr double kFar = 1e9;
+      const Json view = {{"xmag", camera.span->x},
+                         {"ymag", camera.span->y},
+                         {"znear", camera.near},
+                         {"zfar", camera.far.value_or(camera.near + kFar)}};
+      return {{"name", camera.name}, {"type", "orthographic"}, {"orthographic", view}};
+    }
     Json view = {{"yfov", camera.fov_y}, {"znear", camera.near}};
     if (camera.far) view["zfar"] = *camera.far;
     if (camera.aspect) view["aspectRatio"] = *camera.aspect;

@@ -101,9 +101,12 @@ void describe_lights(const Scene& scene, Out out) {
 void describe_cameras(const Scene& scene, Out out) {
   fmt::format_to(out, "cameras: {}\n", scene.cameras.size());
   for (const Camera& camera : scene.cameras) {
-    fmt::format_to(out, "  {}: at {}, towards {}, {:.4g} degrees, near {:.4g}", camera.name,
-                   text(position(camera.world_from_camera)), text(forward(camera.world_from_camera)),
-                   degrees(camera.fov_y), camera.near);
+    const std::string view =
+        camera.span ? fmt::format("orthographic, {:.4g} x {:.4g}", 2 * camera.span->x, 2 * camera.span->y)
+                    : fmt::format("{:.4g} degrees", degrees(camera.fov_y));
+    fmt::format_to(out, "  {}: at {}, towards {}, {}, near {:.4g}", camera.name,
+                   text(position(camera.world_from_camera)), text(forward(camera.world_from_camera)), view,
+                   camera.near);
     if (camera.far) fmt::format_to(out, ", far {:.3g}", *camera.far);
     if (camera.aspect) fmt::format_to(out, ", aspect {:.4g}", *camera.aspect);
     fmt::format_to(out, "\n");

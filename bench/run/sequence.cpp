@@ -15,7 +15,8 @@ constexpr double kPlaneTolerance = 1e-3;    // of the view depth
 constexpr double kNormalTolerance = 0.906;  // cosine of 25 degrees
 
 bool same_view(const Camera& a, const Camera& b) {
-  return a.world_from_camera == b.world_from_camera && a.fov_y == b.fov_y && a.aspect == b.aspect;
+  return a.world_from_camera == b.world_from_camera && a.fov_y == b.fov_y && a.aspect == b.aspect &&
+         a.span == b.span;
 }
 
 // Where a camera sees a position relative to its eye: pixel, or nothing outside its image.
@@ -23,10 +24,9 @@ std::optional<uint32_t> pixel_of(const Camera& camera, const glm::dvec3& relativ
                                  uint32_t height) {
   const glm::dvec3 p = glm::transpose(glm::dmat3(camera.world_from_camera)) * relative;
   if (!(-p.z > 0)) return std::nullopt;
-  const double aspect = double(width) / height, half = half_extent(camera, aspect).y,
-               half_width = half * aspect;
-  const double x = std::floor((0.5 + 0.5 * p.x / (-p.z * half_width)) * width),
-               y = std::floor((0.5 - 0.5 * p.y / (-p.z * half)) * height);
+  const glm::dvec2 half = half_extent(camera, double(width) / height) * (camera.span ? 1.0 : -p.z);
+  const double x = std::floor((0.5 + 0.5 * p.x / half.x) * width),
+               y = std::floor((0.5 - 0.5 * p.y / half.y) * height);
   if (!(x >= 0 && y >= 0 && x < width && y < height)) return std::nullopt;
   return static_cast<uint32_t>(y) * width + static_cast<uint32_t>(x);
 }

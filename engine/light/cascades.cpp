@@ -21,14 +21,15 @@ struct Window {
 // What the camera sees from the depths of `volume`'s nearest bounds to `reach`, as the whole view shows it.
 Window window_of(const ViewVolume& volume, const Camera& camera, double aspect,
                  const glm::dmat4& light_from_seen, double reach) {
-  const double y = half_extent(camera, aspect).y, x = y * aspect;
+  const glm::dvec2 half = half_extent(camera, aspect);
   glm::dmat4 turned = camera.world_from_camera;
   turned[3] = glm::dvec4(0.0, 0.0, 0.0, 1.0);
   Window window;
   for (const double depth : {volume.nearest(), reach})
-    for (const double sx : {-x, x})
-      for (const double sy : {-y, y}) {
-        const glm::dvec2 at(light_from_seen * turned * glm::dvec4(sx * depth, sy * depth, -depth, 1.0));
+    for (const double sx : {-1.0, 1.0})
+      for (const double sy : {-1.0, 1.0}) {
+        const glm::dvec2 at(light_from_seen * turned *
+                            glm::dvec4(view_corner(camera, half, sx, sy, depth), 1.0));
         window.min = glm::min(window.min, at), window.max = glm::max(window.max, at);
       }
   return window;

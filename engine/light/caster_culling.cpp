@@ -66,7 +66,7 @@ bool inside_view(const LightView& view, const Corners& corners, const glm::dvec3
 
 // World units that `reach` texels of a view along both axes span at most.
 double reach_world(const LightView& view, uint32_t map_size, uint32_t reach) {
-  const double half = std::max(view.half_width, view.half_height) * (view.orthographic ? 1.0 : view.far);
+  const double half = std::max(view.half_width, view.half_height) * (view.orthographic ? 1.0 : view.farthest);
   return reach * std::numbers::sqrt2 * 2.0 * half / map_size;
 }
 
@@ -84,6 +84,21 @@ std::array<glm::dvec3, 8> box_corners(const Scene& scene, const Instance& instan
     corners[static_cast<size_t>(i)] = glm::dvec3(placed * glm::dvec4(corner, 1.0));
   }
   return corners;
+}
+
+bool outside_view(const Corners& corners, const glm::dmat4& view_from_corners, const Camera& camera,
+                  double aspect) {
+  const glm::dvec2 half = half_extent(camera, aspect);
+  if (!camera.span) return outside_pyramid(corners, view_from_corners, half.x, half.y, camera.near);
+  Bounds box;
+  for (const glm::dvec3& p : corners) box.add(glm::dvec3(view_from_corners * glm::dvec4(p, 1.0)));
+  return box.max.x < -half.x || box.min.x > half.x || box.max.y < -half.y || box.min.y > half.y ||
+         -box.min.z < camera.near;
+}
+
+glm::dvec3 view_corner(const Camera& camera, const glm::dvec2& half, double sx, double sy, double depth) {
+  const double widening = camera.span ? 1.0 : depth;
+  return {sx * half.x * widening, sy * half.y * widening, -depth};
 }
 
 bool outside_pyramid(const Corners& corners, const glm::dmat4& view_from_corners, double half_width,
@@ -109,11 +124,11 @@ ViewVolume::ViewVolume(const Scene& scene, const Camera& camera, double aspect, 
   glm::dmat4 placed = camera.world_from_camera;
   placed[3] -= glm::dvec4(origin, 0.0);
   const glm::dmat4 view = glm::inverse(placed);
-  const double y = half_extent(camera, aspect).y, x = y * aspect;
+  const glm::dvec2 half = half_extent(camera, aspect);
   double nearest = 1e300, farthest = 0;
   for (const Instance& instance : scene.instances) {
     const Corners corners = box_corners(scene, instance, origin);
-    if (outside_pyramid(corners, view, x, y, camera.near)) continue;
+    if (outside_view(corners, view, camera, aspect)) continue;
     for (const glm::dvec3& p : corners) {
       const double depth = -glm::dvec3(view * glm::dvec4(p, 1.0)).z;
       nearest = std::min(nearest, depth), farthest = std::max(farthest, depth);
@@ -124,7 +139,7 @@ ViewVolume::ViewVolume(const Scene& scene, const Camera& camera, double aspect, 
   farthest_ = std::max(farthest, nearest_);
   for (const double z : {nearest_, farthest_})
     for (const auto& [sx, sy] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
-      corners_.emplace_back(placed * glm::dvec4(sx * x * z, sy * y * z, -z, 1.0));
+      corners_.emplace_back(placed * glm::dvec4(view_corner(camera, half, sx, sy, z), 1.0));
 }
 
 LightVolume::LightVolume(const ViewVolume& view, const glm::dvec4& light, double around)

@@ -48,6 +48,12 @@ class LightVolume {
 
 // Corners of an instance's bounds, relative to `origin`.
 std::array<glm::dvec3, 8> box_corners(const Scene& scene, const Instance& instance, const glm::dvec3& origin);
+// Has some plane of what the camera sees, near plane included, all corners outside? `aspect`: width / height.
+bool outside_view(const std::array<glm::dvec3, 8>& corners, const glm::dmat4& view_from_corners,
+                  const Camera& camera, double aspect);
+// A place at the border of what the camera sees, in its frame: `sx`, `sy` are -1 or 1, or between for places
+// inside. `half`: half_extent().
+glm::dvec3 view_corner(const Camera& camera, const glm::dvec2& half, double sx, double sy, double depth);
 // Has some plane of an open pyramid (it looks along -z; tangents of its half angles) all corners outside?
 bool outside_pyramid(const std::array<glm::dvec3, 8>& corners, const glm::dmat4& view_from_corners,
                      double half_width, double half_height, double nearest);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/light/light_view.h"
@@ -16,7 +17,7 @@ struct ViewFit;  // engine/light/light_views.cpp
 // Light::moving say so.
 class LightFit {
  public:
-  LightFit(const Scene& scene, uint32_t map_size, uint32_t border);
+  LightFit(const Scene& scene, uint32_t map_size, uint32_t border, std::optional<SeenFrom> seen = {});
   LightFit(LightFit&&) noexcept;
   LightFit& operator=(LightFit&&) noexcept;
   ~LightFit();
@@ -24,6 +25,8 @@ class LightFit {
 
  private:
   uint32_t map_size_, border_;
+  std::optional<SeenFrom> seen_;
+  glm::dvec3 middle_;           // what distances of a directional light's vertices are from
   std::vector<ViewFit> still_;  // per light that stands still: of the instances that do
 };
 

@@ -3,11 +3,14 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <span>
+#include <limits>
+#include <optional>
 
 #include "engine/base/error.h"
+#include "engine/light/casts_beyond.h"
 #include "engine/light/light_fit.h"
 #include "engine/light/light_view.h"
+#include "engine/light/view_depths.h"
 #include "engine/scene/area_light.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/wide_spot.h"
@@ -19,147 +22,33 @@ constexpr double kMargin = 0.01;  // of near and far, and of an orthographic map
 // Of far. Perspective depth tells far distances apart by 6e-8 / kSmallestNear of them: a texel of a map of
 // 4096 a side. Nearer casters are drawn as if they were there.
 constexpr double kSmallestNear = 1e-4;
-constexpr double kSmallestDepth = 1e-9;  // of the scene's radius: nothing nearer to the light counts
+// A view is fitted to what is near where the next vertex is so many times as far, and nothing there casts on
+// what the camera sees: its map would be as many times as coarse.
+constexpr double kWorthLeavingOut = 16;
 
 struct Range {  // of depths along the view axis; empty when lo > hi
   double lo = 1e300, hi = -1e300;
   bool empty() const { return lo > hi; }
-  void add(double d) { lo = std::min(lo, d), hi = std::max(hi, d); }
-  void add(const Range& other) { lo = std::min(lo, other.lo), hi = std::max(hi, other.hi); }
 };
 
-// A half space dot(normal, p) + offset >= 0 in light space.
-struct Plane {
-  glm::dvec3 normal;
-  double offset = 0;
-  double distance(const glm::dvec3& p) const { return glm::dot(normal, p) + offset; }
-};
-using Frustum = std::array<Plane, 5>;  // four sides through the light, and z <= -nearest
-
-Frustum perspective_frustum(double half_width, double half_height, double nearest) {
-  return {Plane{{1, 0, -half_width}}, Plane{{-1, 0, -half_width}}, Plane{{0, 1, -half_height}},
-          Plane{{0, -1, -half_height}}, Plane{{0, 0, -1}, -nearest}};
-}
-
-// A triangle against 5 planes has at most 8 corners (Sutherland and Hodgman 1974).
-struct Polygon {
-  std::array<glm::dvec3, 10> corners{};
-  size_t count = 0;
-  void add(const glm::dvec3& p) {
-    if (count < corners.size()) corners[count++] = p;
-  }
-};
-
-Polygon clip(const Polygon& polygon, const Plane& plane) {
-  Polygon result;
-  for (size_t i = 0; i < polygon.count; ++i) {
-    const glm::dvec3 &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
-    const double da = plane.distance(a), db = plane.distance(b);
-    if (da >= 0) result.add(a);
-    if ((da >= 0) != (db >= 0)) result.add(a + (b - a) * (da / (da - db)));
-  }
-  return result;
-}
-
-struct Transformed {  // one mesh in light space; outcodes: bit i set when outside plane i
-  std::vector<glm::dvec3> positions;
-  std::vector<uint8_t> outcodes;
-};
-
-uint8_t outcode(const Frustum& frustum, const glm::dvec3& p) {
-  uint8_t code = 0;
-  for (size_t i = 0; i < frustum.size(); ++i)
-    code = static_cast<uint8_t>(code | (frustum[i].distance(p) < 0 ? 1u << i : 0u));
-  return code;
-}
-
-void add_clipped(const Frustum& frustum, uint8_t crossed, const std::array<glm::dvec3, 3>& triangle,
-                 Range& range) {
-  Polygon polygon;
-  for (const glm::dvec3& p : triangle) polygon.add(p);
-  for (size_t i = 0; i < frustum.size(); ++i)
-    if ((crossed >> i & 1) != 0) polygon = clip(polygon, frustum[i]);
-  for (size_t i = 0; i < polygon.count; ++i) range.add(-polygon.corners[i].z);
-}
-
-// The corners of an object-space box decide first: all outside one plane, or all inside.
-std::pair<uint8_t, uint8_t> box_outcodes(const Bounds& box, const glm::dmat4& light_from_object,
-                                         const Frustum& frustum) {
-  uint8_t all = 0xFF, any = 0;
-  for (int i = 0; i < 8; ++i) {
-    const glm::dvec3 corner((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
-                            (i & 4) != 0 ? box.max.z : box.min.z);
-    const uint8_t code = outcode(frustum, glm::dvec3(light_from_object * glm::dvec4(corner, 1.0)));
-    all &= code, any |= code;
-  }
-  return {all, any};
-}
-
-// Depths of the part of a mesh inside the frustum: its triangles are clipped, so that a large one counts with
-// what the frustum holds of it and with nothing else.
-void add_mesh(const Mesh& mesh, const glm::dmat4& light_from_object, const Frustum& frustum,
-              Transformed& work, Range& range) {
-  const auto [all, any] = box_outcodes(mesh.bounds, light_from_object, frustum);
-  if (all != 0) return;
-  const auto to_light = [&](const glm::vec3& p) {
-    return glm::dvec3(light_from_object * glm::dvec4(glm::dvec3(p), 1.0));
-  };
-  if (any == 0) {
-    for (const glm::vec3& p : mesh.positions) range.add(-to_light(p).z);
-    return;
-  }
-  work.positions.resize(mesh.positions.size());
-  work.outcodes.resize(mesh.positions.size());
-  for (size_t i = 0; i < mesh.positions.size(); ++i) {
-    work.positions[i] = to_light(mesh.positions[i]);
-    work.outcodes[i] = outcode(frustum, work.positions[i]);
-    if (work.outcodes[i] == 0) range.add(-work.positions[i].z);
-  }
-  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
-    const uint8_t crossed = work.outcodes[a] | work.outcodes[b] | work.outcodes[c];
-    if (crossed == 0 || (work.outcodes[a] & work.outcodes[b] & work.outcodes[c]) != 0) continue;
-    add_clipped(frustum, crossed, {work.positions[a], work.positions[b], work.positions[c]}, range);
-  }
-}
-
-double scene_size(const Scene& scene) {
-  const double radius = scene.bounds.radius();
-  return radius > 0 && std::isfinite(radius) ? radius : 1.0;
-}
-
-// Which instances are measured: all, those that stand still, or those that move.
-enum class Which { all, still, moving };
-bool takes(Which which, const Instance& instance) {
-  if (!instance.visible) return false;
-  return which == Which::all || instance.moving == (which == Which::moving);
-}
-
-// `from`: nothing nearer to the view's apex counts.
-Range depths_inside(const Scene& scene, const LightView& view, Which which, double from = 0) {
-  const Frustum frustum =
-      perspective_frustum(view.half_width, view.half_height, from + kSmallestDepth * scene_size(scene));
-  Range range;
-  Transformed work;
-  for (const Instance& instance : scene.instances)
-    if (takes(which, instance))
-      add_mesh(scene.meshes[instance.mesh], view.light_from_world * instance.world_from_object, frustum, work,
-               range);
-  return range;
+Range range_of(const Shells& depths) {
+  const Bounds all = depths.all();
+  return {all.min.x, all.max.x};
 }
 
 void set_perspective_range(LightView& view, Range range, double size) {
   if (range.empty()) range = {0.01 * size, size};  // nothing in sight: any valid range will do
   view.far = range.hi * (1.0 + kMargin);
   view.near = std::max(range.lo * (1.0 - kMargin), view.far * kSmallestNear);
+  view.farthest = view.far;
 }
 
 }  // namespace
 
 // What one light sees of some of the scene's instances.
 struct ViewFit {
-  Range depths;  // spot and point lights
-  Bounds box;    // directional lights: along the light's axes, about the scene's centre at time 0
+  Shells depths;  // spot and point lights
+  Shells box;     // directional lights: along the light's axes, about the scene's centre at time 0
 };
 
 namespace {
@@ -175,33 +64,22 @@ LightView spot_view(const Scene& scene, uint32_t index) {
 
 // The light's axes at the scene's centre, so that far origins lose no digits: the position of a directional
 // light means nothing.
-glm::dmat4 centred_axes(const Scene& scene, uint32_t index) {
-  glm::dmat4 axes = scene.lights[index].world_from_light;
-  axes[3] = glm::dvec4(scene.bounds.centre(), 1.0);
+glm::dmat4 axes_at(const Light& light, const glm::dvec3& place) {
+  glm::dmat4 axes = light.world_from_light;
+  axes[3] = glm::dvec4(place, 1.0);
   return axes;
 }
-
-Bounds box_along(const Scene& scene, const glm::dmat4& axes, Which which) {
-  const glm::dmat4 light_from_world = glm::inverse(axes);
-  Bounds box;
-  for (const Instance& instance : scene.instances) {
-    if (!takes(which, instance)) continue;
-    const glm::dmat4 light_from_object = light_from_world * instance.world_from_object;
-    for (const glm::vec3& p : scene.meshes[instance.mesh].positions)
-      box.add(glm::dvec3(light_from_object * glm::dvec4(glm::dvec3(p), 1.0)));
-  }
-  return box;
+glm::dmat4 centred_axes(const Scene& scene, uint32_t index) {
+  return axes_at(scene.lights[index], scene.bounds.centre());
 }
 
 // Fitted to the vertices along the light's own axes: the map is centred on them and the nearest vertex is one
-// scene depth away.
-LightView directional_view(const Scene& scene, uint32_t index, Bounds box) {
+// scene depth away. `axes`: those that `box` is along. `size`: of what the view shows.
+LightView directional_view(uint32_t index, glm::dmat4 axes, Bounds box, double size) {
   LightView view;
   view.light = index;
   view.orthographic = true;
-  glm::dmat4 axes = centred_axes(scene, index);
   if (box.empty()) box.add(glm::dvec3(0.0));
-  const double size = scene_size(scene);
   const double depth = std::max(box.max.z - box.min.z, 1e-3 * size);
   const glm::dvec3 centre = box.centre();
   axes[3] = axes * glm::dvec4(centre.x, centre.y, box.max.z + depth, 1.0);
@@ -260,27 +138,71 @@ std::vector<LightView> unfitted_views(const Scene& scene, uint32_t index, uint32
   return {};
 }
 
-ViewFit measure(const Scene& scene, uint32_t index, const std::vector<LightView>& views, Which which) {
+ViewFit measure(const Scene& scene, uint32_t index, const std::vector<LightView>& views,
+                const Measured& measured) {
   ViewFit fit;
   if (scene.lights[index].type == LightType::directional)
-    fit.box = box_along(scene, centred_axes(scene, index), which);
-  for (const LightView& view : views) fit.depths.add(depths_inside(scene, view, which));
+    fit.box = box_along(scene, centred_axes(scene, index), measured);
+  for (const LightView& view : views) fit.depths.add(depths_inside(scene, view, measured));
   return fit;
 }
 
+Measured measured_of(const Scene& scene, Which which, const glm::dvec3& middle) {
+  return {which, middle, std::numeric_limits<double>::infinity(), scene_size(scene)};
+}
+
+// How far the vertices are that views have to show; nothing: all of them. The penumbrae of a sun with a size
+// may reach further than what casts them.
+std::optional<double> needed_reach(const Scene& scene, uint32_t index, const ViewFit& fit,
+                                   const glm::dvec3& middle, const SeenFrom& seen) {
+  const Light& light = scene.lights[index];
+  const bool directional = light.type == LightType::directional;
+  if (directional && has_size(light)) return std::nullopt;
+  for (const double reach : (directional ? fit.box : fit.depths).gaps(kWorthLeavingOut))
+    if (!casts_beyond(scene, light, middle, reach, seen)) return reach;
+  return std::nullopt;
+}
+
+// Views of what is near alone. What is further off casts from where the view ends, and receives what is cast.
+void fit_to_near(const Scene& scene, uint32_t index, const Measured& near, std::vector<LightView>& views) {
+  const bool perspective = !views.empty();
+  ViewFit fit = measure(scene, index, views, near);
+  if (perspective) {
+    for (LightView& view : views) {
+      const double farthest = view.farthest;
+      set_perspective_range(view, range_of(fit.depths), near.size);
+      view.farthest = farthest;
+    }
+    return;
+  }
+  // Once more about its own centre: the scene's may be so far off that rounding tells.
+  glm::dmat4 axes = centred_axes(scene, index);
+  axes = axes_at(scene.lights[index], glm::dvec3(axes * glm::dvec4(fit.box.all().centre(), 1.0)));
+  const Bounds box = box_along(scene, axes, near).all();
+  views.push_back(directional_view(index, axes, box, box.radius()));
+}
+
 // One range for all views of a light, so that depths can be compared across them. `still`: what was measured
-// of the instances that stand still; nullptr: nothing.
+// of the instances that stand still; nullptr: nothing. `middle`: see Measured.
 void add_views(const Scene& scene, uint32_t index, uint32_t map_size, uint32_t border, const ViewFit* still,
+               const glm::dvec3& middle, const std::optional<SeenFrom>& seen,
                std::vector<LightView>& result) {
   std::vector<LightView> views = unfitted_views(scene, index, map_size, border);
-  ViewFit fit = measure(scene, index, views, still != nullptr ? Which::moving : Which::all);
-  if (still != nullptr) {
-    fit.depths.add(still->depths);
-    if (!still->box.empty()) fit.box.add(still->box.min), fit.box.add(still->box.max);
-  }
-  for (LightView& view : views) set_perspective_range(view, fit.depths, scene_size(scene));
-  if (views.empty()) views.push_back(directional_view(scene, index, fit.box));
+  const Which which = still != nullptr ? Which::moving : Which::all;
+  ViewFit fit = measure(scene, index, views, measured_of(scene, which, middle));
+  if (still != nullptr) fit.depths.add(still->depths), fit.box.add(still->box);
+  for (LightView& view : views) set_perspective_range(view, range_of(fit.depths), scene_size(scene));
+  const auto reach = seen ? needed_reach(scene, index, fit, middle, *seen) : std::nullopt;
+  if (reach)
+    fit_to_near(scene, index, {Which::all, middle, *reach, *reach}, views);
+  else if (views.empty())
+    views.push_back(directional_view(index, centred_axes(scene, index), fit.box.all(), scene_size(scene)));
   result.insert(result.end(), views.begin(), views.end());
+}
+
+// What distances of directional lights' vertices are from.
+glm::dvec3 middle_of(const Scene& scene, const std::optional<SeenFrom>& seen) {
+  return seen ? glm::dvec3(seen->camera.world_from_camera[3]) : scene.bounds.centre();
 }
 
 }  // namespace
@@ -301,17 +223,24 @@ glm::dmat4 LightView::clip_from_light() const {
   return clip;
 }
 
-std::vector<LightView> light_views(const Scene& scene, uint32_t map_size, uint32_t border) {
+std::vector<LightView> light_views(const Scene& scene, uint32_t map_size, uint32_t border,
+                                   const std::optional<SeenFrom>& seen) {
   std::vector<LightView> views;
-  for (uint32_t i = 0; i < scene.lights.size(); ++i) add_views(scene, i, map_size, border, nullptr, views);
+  for (uint32_t i = 0; i < scene.lights.size(); ++i)
+    add_views(scene, i, map_size, border, nullptr, middle_of(scene, seen), seen, views);
   return views;
 }
 
-LightFit::LightFit(const Scene& scene, uint32_t map_size, uint32_t border)
-    : map_size_(map_size), border_(border), still_(scene.lights.size()) {
+LightFit::LightFit(const Scene& scene, uint32_t map_size, uint32_t border, std::optional<SeenFrom> seen)
+    : map_size_(map_size),
+      border_(border),
+      seen_(seen),
+      middle_(middle_of(scene, seen)),
+      still_(scene.lights.size()) {
   for (uint32_t i = 0; i < scene.lights.size(); ++i)
     if (!scene.lights[i].moving)
-      still_[i] = measure(scene, i, unfitted_views(scene, i, map_size, border), Which::still);
+      still_[i] = measure(scene, i, unfitted_views(scene, i, map_size, border),
+                          measured_of(scene, Which::still, middle_));
 }
 LightFit::LightFit(LightFit&&) noexcept = default;
 LightFit& LightFit::operator=(LightFit&&) noexcept = default;
@@ -320,7 +249,8 @@ LightFit::~LightFit() = default;
 std::vector<LightView> LightFit::views(const Scene& scene) const {
   std::vector<LightView> views;
   for (uint32_t i = 0; i < scene.lights.size(); ++i)
-    add_views(scene, i, map_size_, border_, scene.lights[i].moving ? nullptr : &still_[i], views);
+    add_views(scene, i, map_size_, border_, scene.lights[i].moving ? nullptr : &still_[i], middle_, seen_,
+              views);
   return views;
 }
 
@@ -334,15 +264,19 @@ AreaView area_view(const Scene& scene, const LightView& centre) {
   LightView behind = centre;
   behind.light_from_world =
       glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -back)) * centre.light_from_world;
-  Range depths = depths_inside(scene, behind, Which::all, back);
+  Measured measured = measured_of(scene, Which::all, glm::dvec3(0.0));
+  if (centre.far < centre.farthest) measured.reach = centre.far + back;
+  Range depths = range_of(depths_inside(scene, behind, measured, back));
   depths.lo -= back, depths.hi -= back;
   AreaView result{centre, 0};
   set_perspective_range(result.view, depths, scene_size(scene));
+  if (centre.far < centre.farthest) result.view.farthest = centre.farthest;
   // Receivers at depth z lie within +-t z of the axis, seen from a sample at x within (+-t z - x) / z. Nearer
   // than the light's own size the window would only widen.
-  const double nearest = std::min(std::max(result.view.near, std::max(x, y)), result.view.far);
-  const double spread = 0.5 * (1.0 / nearest - 1.0 / result.view.far);
-  result.converge = 0.5 * (1.0 / nearest + 1.0 / result.view.far);
+  const double farthest = result.view.farthest;
+  const double nearest = std::min(std::max(result.view.near, std::max(x, y)), farthest);
+  const double spread = 0.5 * (1.0 / nearest - 1.0 / farthest);
+  result.converge = 0.5 * (1.0 / nearest + 1.0 / farthest);
   result.view.half_width += x * spread, result.view.half_height += y * spread;
   return result;
 }

@@ -16,7 +16,7 @@ namespace {
 using Corners = std::array<glm::dvec3, 8>;
 
 struct View {
-  glm::dvec3 eye;
+  glm::dvec4 eye;  // relative to the scene's centre; w = 0: the direction towards an orthographic one
   std::vector<bool> visible;  // per body
   ViewVolume volume;
 };
@@ -170,10 +170,10 @@ std::vector<Body> bodies_of(const Scene& scene, const glm::dvec3& origin) {
 }
 
 // The camera sees only the side of a planar receiver that faces away from the light's centre.
-bool faces_away(const Body& receiver, const Source& source, const glm::dvec3& eye) {
+bool faces_away(const Body& receiver, const Source& source, const glm::dvec4& eye) {
   if (!receiver.planar) return false;
   constexpr double kGrazing = 1e-3;  // sine of the angle below which planar meshes' triangles may differ
-  const double seen = glm::dot(eye - receiver.point, receiver.normal);
+  const double seen = glm::dot(glm::dvec3(eye) - eye.w * receiver.point, receiver.normal);
   const glm::dvec3 to_light = glm::dvec3(source.place) - source.place.w * receiver.point;
   const double side = glm::dot(to_light, receiver.normal) * (seen < 0 ? -1.0 : 1.0);
   return side < -kGrazing * glm::length(to_light);
@@ -240,13 +240,13 @@ SceneFacts scene_facts(const Scene& scene, const Camera& camera, double aspect, 
   placed[3] -= glm::dvec4(origin, 0.0);
   const glm::dmat4 view = glm::inverse(placed);
   const double half = half_extent(camera, aspect).y;
-  View seen{glm::dvec3(placed[3]), {}, ViewVolume(scene, camera, aspect, origin)};
-  for (const Body& body : bodies)
-    seen.visible.push_back(!outside_pyramid(body.corners, view, half * aspect, half, camera.near));
-  facts.middle_depth = std::max(glm::length(seen.eye), 1e-30);
+  View seen{camera.span ? placed[2] : placed[3], {}, ViewVolume(scene, camera, aspect, origin)};
+  for (const Body& body : bodies) seen.visible.push_back(!outside_view(body.corners, view, camera, aspect));
+  facts.middle_depth = camera.span ? half : std::max(glm::length(glm::dvec3(placed[3])), 1e-30);
   const bool still = !facts.casters_move && !camera.moving;
   facts.nearest_depth = still ? std::max(seen.volume.nearest(), camera.near) : camera.near;
-  if (height > 0) facts.smallest_pixel = 2 * half / height * facts.nearest_depth;
+  if (camera.span) facts.nearest_depth = half;
+  if (height > 0) facts.smallest_pixel = 2 * (camera.span ? 1.0 : half) / height * facts.nearest_depth;
   for (const Light& light : scene.lights) {
     facts.light_moves.push_back(light.moving);
     const bool may = !still || light.moving;  // somewhere on the way

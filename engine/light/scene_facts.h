@@ -17,8 +17,9 @@ struct SceneFacts {
   bool has_open_meshes = false;
   bool animated = false;
   bool casters_move = false;
-  double nearest_depth = 0;   // no visible surface is nearer to the camera along its axis
-  double middle_depth = 1;    // the camera's distance to the scene's middle
+  double nearest_depth = 0;  // no visible surface is nearer to the camera along its axis
+  double middle_depth = 1;   // the camera's distance to the scene's middle
+  // (of an orthographic camera both are its image_scale(), which sizes in its image go with)
   double smallest_pixel = 0;  // no pixel shows less of a visible surface than this, world units
   // per light:
   std::vector<std::string> shadowless;  // why the camera sees none of its shadows; empty: it may see some

@@ -187,7 +187,8 @@ void DevicePlan::make_node(uint32_t index) {
   const PlanNode& node = plan_.nodes[index];
   NodeState& state = nodes_[index];
   check_storage_images(*device_, node);
-  state.preamble = light_kind_text(scene_.scene().lights) + preamble(node.declaration, node.constant_inputs);
+  state.preamble = light_kind_text(scene_.scene().lights) + camera_kind_text(scene_.camera()) +
+                   preamble(node.declaration, node.constant_inputs);
   const auto shown = shader_ports(node.declaration);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const ShaderPort& s : shown)

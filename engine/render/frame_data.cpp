@@ -1,6 +1,7 @@
 // Fills the data that every shader sees: camera, lights and views.
 #include "engine/render/frame_data.h"
 #include "engine/light/light_view.h"
+#include "engine/scene/camera.h"
 #include "engine/scene/wide_spot.h"
 
 #include <cmath>
@@ -12,8 +13,20 @@
 namespace gnomon {
 namespace {
 
-// Infinite far plane, Vulkan clip space (y down). Reversed: depth = near / z; standard: 1 - near / z.
-glm::dmat4 camera_projection(const Camera& camera, double aspect, bool reversed_z) {
+// Depth from `near` to `end`, linear; what lies beyond either is not in the image.
+glm::dmat4 orthographic_projection(const glm::dvec2& half, double near, double end, bool reversed_z) {
+  glm::dmat4 p(1.0);
+  p[0][0] = 1.0 / half.x;
+  p[1][1] = -1.0 / half.y;
+  p[2][2] = (reversed_z ? 1.0 : -1.0) / (end - near);
+  p[3][2] = (reversed_z ? end : -near) / (end - near);
+  return p;
+}
+
+// Vulkan clip space (y down). Perspective: infinite far plane; reversed: depth = near / z; standard: 1 - near
+// / z. `near`, `end`: of the image's camera, so that another one's depths compare with it.
+glm::dmat4 camera_projection(const Camera& camera, double aspect, bool reversed_z, double near, double end) {
+  if (camera.span) return orthographic_projection(half_extent(camera, aspect), near, end, reversed_z);
   const double focal = 1.0 / half_extent(camera, aspect).y;
   glm::dmat4 p(0.0);
   p[0][0] = focal / aspect;
@@ -46,24 +59,29 @@ void relative_rows(const glm::dmat4& light_from_world, const glm::dvec3& eye, gl
 }  // namespace
 
 FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
-                     bool reversed_z, uint32_t lights, uint32_t frame) {
+                     bool reversed_z, uint32_t lights, uint32_t frame, double depth_end) {
   const double aspect = double(width) / height;
   const glm::dmat3 world_from_camera(camera.world_from_camera);
   const glm::dmat4 view = view_rotation(camera);
-  const double half = half_extent(camera, aspect).y, half_width = half * aspect;
+  const double scale = image_scale(camera, aspect);
+  const double half = half_extent(camera, aspect).y / scale, half_width = half * aspect;
   FrameData data{};
-  data.clip_from_relative = glm::mat4(camera_projection(camera, aspect, reversed_z) * view);
+  data.clip_from_relative =
+      glm::mat4(camera_projection(camera, aspect, reversed_z, camera.near, depth_end) * view);
   data.view_from_relative = glm::mat4(view);
-  data.ray_corner = glm::vec4(world_from_camera * glm::dvec3(-half_width, half, -1.0), 0.0);
+  const double ahead = camera.span ? 0.0 : -1.0;
+  data.ray_corner =
+      glm::vec4(world_from_camera * glm::dvec3(-half_width, half, ahead), camera.span ? scale : 0.0);
   data.ray_dx = glm::vec4(world_from_camera[0] * (2.0 * half_width / width), 0.0);
   data.ray_dy = glm::vec4(world_from_camera[1] * (-2.0 * half / height), 0.0);
   data.viewport = {float(width), float(height), 1.0f / float(width), 1.0f / float(height)};
-  data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, float(camera.far.value_or(0.0)), 0.0f};
+  data.depth = {float(camera.near), reversed_z ? 1.0f : 0.0f, float(camera.far.value_or(0.0)),
+                float(depth_end)};
   data.counts = {lights, 0, frame, 0};
   const glm::dvec3 step(camera.world_from_camera[3] - previous.world_from_camera[3]);
   data.previous_clip_from_relative =
-      glm::mat4(camera_projection(previous, aspect, reversed_z) * view_rotation(previous) *
-                glm::translate(glm::dmat4(1.0), step));
+      glm::mat4(camera_projection(previous, aspect, reversed_z, camera.near, depth_end) *
+                view_rotation(previous) * glm::translate(glm::dmat4(1.0), step));
   return data;
 }
 

@@ -10,13 +10,15 @@
 namespace gnomon {
 
 struct FrameData {
-  glm::mat4 clip_from_relative;           // camera projection; positions are relative to the camera's eye
-  glm::mat4 view_from_relative;           // rotation
-  glm::vec4 ray_corner;                   // relative position at view depth 1 of the image's top left corner
-  glm::vec4 ray_dx, ray_dy;               // step of it per pixel
-  glm::vec4 viewport;                     // width, height, 1/width, 1/height
-  glm::vec4 depth;                        // near plane (world units), 1 when reversed z, far plane or 0
-  glm::uvec4 counts;                      // lights, unused, frame index, unused
+  glm::mat4 clip_from_relative;  // camera projection; positions are relative to the camera's eye
+  glm::mat4 view_from_relative;  // rotation
+  // Relative position at view depth 1 of the image's top left corner; of an orthographic camera at the eye's
+  // depth, in parts of w, its image_scale().
+  glm::vec4 ray_corner;
+  glm::vec4 ray_dx, ray_dy;  // step of it per pixel
+  glm::vec4 viewport;        // width, height, 1/width, 1/height
+  glm::vec4 depth;           // near plane (world units), 1 when reversed z, far plane or 0, `depth_end`
+  glm::uvec4 counts;         // lights, unused, frame index, unused
   glm::mat4 previous_clip_from_relative;  // the previous frame's camera; relative to this frame's eye
 };
 
@@ -50,9 +52,10 @@ struct MaterialData {
   glm::vec4 alpha;  // cutoff (0: opaque), 1 when double-sided
 };
 
-// `previous`: the camera of the frame before; of the first frame, its own.
+// `previous`: the camera of the frame before; of the first frame, its own. `depth_end`: of an orthographic
+// camera, the view depth that device depths reach to; see depth_end().
 FrameData frame_data(const Camera& camera, const Camera& previous, uint32_t width, uint32_t height,
-                     bool reversed_z, uint32_t lights, uint32_t frame);
+                     bool reversed_z, uint32_t lights, uint32_t frame, double depth_end = 0);
 std::vector<LightData> light_data(const Scene& scene, const glm::dvec3& eye);
 // `views`: light by light, some of each.
 std::vector<LightViewData> light_view_data(const std::vector<LightView>& views, const glm::dvec3& eye);

@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/animation.h"
+#include "engine/scene/camera.h"
 #include "engine/vulkan/commands.h"
 
 namespace gnomon {
@@ -325,8 +326,9 @@ void GpuScene::update(const FrameView& view, double seconds, uint32_t frame_inde
   const glm::dvec3 eye(camera.world_from_camera[3]);
   const bool eye_moved = first || eye != glm::dvec3(previous.world_from_camera[3]);
   camera_changed_ = first || camera.world_from_camera != previous.world_from_camera || !same(view, view_);
-  frame_ = frame_data(camera, previous, view.width, view.height, view.reversed_z,
-                      uint32_t(scene_->lights.size()), frame_index);
+  frame_ =
+      frame_data(camera, previous, view.width, view.height, view.reversed_z, uint32_t(scene_->lights.size()),
+                 frame_index, camera.span ? depth_end(*scene_, camera) : 0.0);
   std::memcpy(frame_buffer_.bytes().data(), &frame_, sizeof(frame_));
   if (eye_moved || any_light()) {  // positions are relative to the eye
     write(lights_, light_data(*scene_, eye));

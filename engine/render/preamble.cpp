@@ -127,6 +127,10 @@ std::string light_kind_text(const std::vector<Light>& lights) {
   return directional == 0 ? "#define NO_DIRECTIONAL_LIGHTS 1\n" : "#define ALL_DIRECTIONAL_LIGHTS 1\n";
 }
 
+std::string camera_kind_text(const Camera& camera) {
+  return camera.span ? "#define ORTHOGRAPHIC_CAMERA 1\n" : "";
+}
+
 std::string preamble(const Declaration& declaration, const std::map<std::string, bool>& constant_inputs) {
   // Constants rather than loads: drivers unroll loops over them and keep loads in those loops uniform.
   std::string text = fmt::format("#define LIGHT_COUNT {}\n", declaration.setting().lights);

@@ -32,6 +32,8 @@ std::string preamble(const Declaration& declaration, const std::map<std::string,
 // NO_DIRECTIONAL_LIGHTS or ALL_DIRECTIONAL_LIGHTS where all lights are of one kind, so that shaders leave out
 // the other; empty otherwise.
 std::string light_kind_text(const std::vector<Light>& lights);
+// ORTHOGRAPHIC_CAMERA where it is one.
+std::string camera_kind_text(const Camera& camera);
 
 // Flags: NAME 0 or 1. Choices: NAME = index of the chosen, and NAME_CHOICE for each possible one.
 Defines parameter_defines(const Params& params);

@@ -14,7 +14,9 @@ struct Image;  // engine/image/image.h
 struct RenderSettings {
   uint32_t width = 1280, height = 720;  // pixels
   uint32_t camera = 0;                  // index into Scene::cameras
-  bool reversed_z = true;               // camera depth: reversed (1 near, 0 at infinity) or standard
+  // Camera depth: reversed (1 near, 0 at infinity) or standard. Orthographic cameras have linear depth, which
+  // floats tell apart best where they are small: standard, whatever is asked for.
+  bool reversed_z = true;
   bool alias = true;                    // transient memory aliasing
   bool keep_all = false;                // leave nothing out
   uint64_t memory = uint64_t{1} << 30;  // bytes that a technique's shadow maps may take at a time

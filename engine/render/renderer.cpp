@@ -109,6 +109,7 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
                      settings.camera),
          scene->file.string(), "--camera", "cameras are counted from 0");
   const Camera& camera = scene->cameras[settings.camera];
+  if (camera.span) settings.reversed_z = false;
   Declaration::Setting setting{{settings.width, settings.height},
                                uint32_t(scene->lights.size()),
                                settings.memory,
@@ -331,6 +332,21 @@ Image Renderer::read(const std::string& output) {
 
 std::vector<uint32_t> Renderer::read_words(const std::string& output) {
   return read_back_words(impl_->device, impl_->on_device->resources()[impl_->readable(output)].image);
+}
+
+std::optional<Renderer::MapViews> Renderer::map_views(const std::string& port) const {
+  const uint32_t resource = impl_->readable(port);
+  for (const PlanNode& node : impl_->plan.nodes)
+    for (const Port& made : node.declaration.ports()) {
+      const auto own = node.resources.find(made.name);
+      if (made.behind.empty() || own == node.resources.end() || own->second != resource) continue;
+      if (made.direction != Direction::out && made.direction != Direction::inout) continue;
+      for (const auto& [name, index] : node.resources) {
+        const std::shared_ptr<ViewSet>& set = impl_->on_device->resources()[index].views;
+        if (set && set->views.size() == made.image.layers) return MapViews{set->views, made.traits};
+      }
+    }
+  return std::nullopt;
 }
 
 MemoryUse Renderer::memory() const {

@@ -11,6 +11,7 @@
 
 #include "engine/graph/graph.h"
 #include "engine/image/image.h"
+#include "engine/light/light_view.h"
 #include "engine/render/left_out.h"
 #include "engine/render/render_settings.h"
 #include "engine/scene/scene.h"
@@ -67,6 +68,14 @@ class Renderer {
   Image read(const std::string& output);
   // The same of one-component 32-bit images, bit for bit: layer after layer, row 0 at the top.
   std::vector<uint32_t> read_words(const std::string& output);
+
+  // Of an output or captured port ("node.port") whose layers show what lights see: their views in the last
+  // frame, and what the pass says of the image. Nothing where no light's views stand behind it.
+  struct MapViews {
+    std::vector<LightView> views;  // a layer each
+    Values traits;
+  };
+  std::optional<MapViews> map_views(const std::string& port) const;
 
   MemoryUse memory() const;
   std::vector<LeftOutPass> left_out() const;    // passes, then parts of those that run

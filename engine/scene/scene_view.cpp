@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "engine/base/error.h"
+#include "engine/scene/light_roll.h"
 #include "engine/scene/mesh_clean.h"
 #include "engine/scene/scene_area.h"
 #include "engine/scene/scene_lights_area.h"
@@ -160,6 +161,46 @@ class LightReader {
   std::vector<bool> own_fov_;
 };
 
+template <class Warn>
+void set_far(Camera& camera, double far, Warn&& warn) {
+  if (std::isfinite(far) && far > camera.near)
+    camera.far = far;
+  else if (far != 0.0)
+    warn("zfar is not above znear, nothing is cut off");
+}
+
+template <class Warn>
+void set_perspective(Camera& camera, const tinygltf::PerspectiveCamera& view, Warn&& warn) {
+  if (std::isfinite(view.yfov) && view.yfov > 1e-4 && view.yfov < kPi - 1e-4)
+    camera.fov_y = view.yfov;
+  else
+    warn("yfov is not in (0, pi), 45 degrees are used");
+  if (std::isfinite(view.znear) && view.znear > 0)
+    camera.near = view.znear;
+  else
+    warn("znear is not above 0, 0.1 is used");
+  set_far(camera, view.zfar, warn);
+  if (std::isfinite(view.aspectRatio) && view.aspectRatio > 0) camera.aspect = view.aspectRatio;
+}
+
+// A negative magnification mirrors the image, which no camera of a shadow's test needs: its size is taken.
+template <class Warn>
+void set_orthographic(Camera& camera, const tinygltf::OrthographicCamera& view, Warn&& warn) {
+  const auto usable = [](double v) { return std::isfinite(v) && std::abs(v) > 1e-15 && std::abs(v) < 1e15; };
+  if (!usable(view.xmag) || !usable(view.ymag))
+    warn("xmag or ymag is not a number other than 0, 1 is used");
+  else if (view.xmag < 0 || view.ymag < 0)
+    warn("xmag or ymag is below 0, the image is not mirrored");
+  camera.span = glm::dvec2(usable(view.xmag) ? std::abs(view.xmag) : 1.0,
+                           usable(view.ymag) ? std::abs(view.ymag) : 1.0);
+  camera.near = 0;
+  if (std::isfinite(view.znear) && view.znear >= 0)
+    camera.near = view.znear;
+  else
+    warn("znear is below 0, 0 is used");
+  set_far(camera, view.zfar, warn);
+}
+
 }  // namespace
 
 void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
@@ -175,9 +216,9 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
            gltf.file, node_place);
     const tinygltf::Camera& source = gltf.model.cameras[static_cast<size_t>(node.camera)];
     const std::string place = gltf.file + ": " + at("/cameras", static_cast<size_t>(node.camera)) + ": ";
-    if (source.type != "perspective") {
-      scene.warnings.messages.push_back(place + "only perspective cameras are read, '" + source.type +
-                                        "' is left out");
+    if (source.type != "perspective" && source.type != "orthographic") {
+      scene.warnings.messages.push_back(place + "perspective and orthographic cameras are read, '" +
+                                        source.type + "' is left out");
       continue;
     }
     Camera camera;
@@ -186,20 +227,11 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
     camera.moving = placed.moving;
     if (placed.moving)
       animation->cameras.push_back({static_cast<uint32_t>(scene.cameras.size()), i, glm::dmat4(1.0)});
-    const tinygltf::PerspectiveCamera& view = source.perspective;
-    if (std::isfinite(view.yfov) && view.yfov > 1e-4 && view.yfov < kPi - 1e-4)
-      camera.fov_y = view.yfov;
+    const auto warn = [&](const char* what) { scene.warnings.messages.push_back(place + what); };
+    if (source.type == "orthographic")
+      set_orthographic(camera, source.orthographic, warn);
     else
-      scene.warnings.messages.push_back(place + "yfov is not in (0, pi), 45 degrees are used");
-    if (std::isfinite(view.znear) && view.znear > 0)
-      camera.near = view.znear;
-    else
-      scene.warnings.messages.push_back(place + "znear is not above 0, 0.1 is used");
-    if (std::isfinite(view.zfar) && view.zfar > camera.near)
-      camera.far = view.zfar;
-    else if (view.zfar != 0.0)
-      scene.warnings.messages.push_back(place + "zfar is not above znear, nothing is cut off");
-    if (std::isfinite(view.aspectRatio) && view.aspectRatio > 0) camera.aspect = view.aspectRatio;
+      set_perspective(camera, source.perspective, warn);
     scene.cameras.push_back(std::move(camera));
   }
 }
@@ -207,6 +239,7 @@ void read_cameras(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Sc
 void read_lights(const GltfFile& gltf, const std::vector<PlacedNode>& nodes, Scene& scene,
                  Animation* animation, const std::map<size_t, Track>& intensities) {
   LightReader(gltf, scene, animation, intensities).read(nodes);
+  level_lights(scene);
 }
 
 void ensure_camera(Scene& scene) {
@@ -220,8 +253,7 @@ void ensure_camera(Scene& scene) {
       looking_at(centre + glm::normalize(glm::dvec3(0.5, 0.6, 1.0)) * distance, centre);
   camera.near = 1e-3 * distance;
   scene.cameras.push_back(camera);
-  scene.warnings.messages.push_back(scene.file.string() +
-                                    ": no perspective camera, a default one frames the scene");
+  scene.warnings.messages.push_back(scene.file.string() + ": no camera, a default one frames the scene");
 }
 
 void ensure_light(Scene& scene) {

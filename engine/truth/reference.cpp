@@ -27,14 +27,16 @@ constexpr uint32_t kMaxSamples = 1u << 20;
 struct PrimaryRays {
   glm::dvec3 eye{0};  // relative to the scene's origin
   glm::dvec3 right{0}, up{0}, forward{0};
-  double tan_x = 1, tan_y = 1, near = 0, far = 0;
+  double tan_x = 1, tan_y = 1, near = 0, far = 0;  // half width and height of an orthographic camera's image
   uint32_t width = 1, height = 1;
+  bool parallel = false;  // orthographic
 
   PrimaryRays(const Camera& camera, const glm::dvec3& origin, uint32_t w, uint32_t h)
       : near(camera.near),
         far(camera.far.value_or(std::numeric_limits<double>::infinity())),
         width(w),
-        height(h) {
+        height(h),
+        parallel(camera.span.has_value()) {
     eye = glm::dvec3(camera.world_from_camera[3]) - origin;
     right = glm::dvec3(camera.world_from_camera[0]);
     up = glm::dvec3(camera.world_from_camera[1]);
@@ -43,9 +45,14 @@ struct PrimaryRays {
     tan_y = half_extent(camera, aspect).y;
     tan_x = tan_y * aspect;
   }
-  glm::dvec3 direction(uint32_t x, uint32_t y) const {
+  struct Ray {
+    glm::dvec3 start, direction;
+  };
+  Ray at(uint32_t x, uint32_t y) const {
     const double sx = 2 * (x + 0.5) / width - 1, sy = 1 - 2 * (y + 0.5) / height;
-    return forward + sx * tan_x * right + sy * tan_y * up;
+    const glm::dvec3 across = sx * tan_x * right + sy * tan_y * up;
+    if (parallel) return {eye + across, forward};
+    return {eye, forward + across};
   }
 };
 
@@ -244,7 +251,8 @@ Reference ReferenceTracer::trace(const ReferenceSettings& settings) const {
   std::vector<NoiseSum> noise(settings.height);
   parallel_rows(settings.height, settings.progress, [&](uint32_t y) {
     for (uint32_t x = 0; x < settings.width; ++x) {
-      const auto hit = rays->first_hit(primary.eye, primary.direction(x, y), primary.near);
+      const PrimaryRays::Ray ray = primary.at(x, y);
+      const auto hit = rays->first_hit(ray.start, ray.direction, primary.near);
       if (!hit || hit->distance > primary.far) continue;
       const size_t pixel = size_t{y} * settings.width + x;
       store_surface(result, *hit, primary.eye, pixel);

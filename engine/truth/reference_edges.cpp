@@ -128,7 +128,8 @@ std::vector<bool> ReferenceTracer::away_from_edges(const Reference& reference, u
     fail(fmt::format("no light {}: the scene has {}", light, scene.lights.size()), scene.file.string());
   if (map_size == 0 || !(texels >= 0))
     fail("distance to edges: the map's size and the distance must be positive");
-  const TexelGrid grid(light_views(scene, map_size, 0), light, map_size, rays.origin());
+  const SeenFrom seen{camera, static_cast<double>(reference.width) / reference.height};
+  const TexelGrid grid(light_views(scene, map_size, 0, seen), light, map_size, rays.origin());
   if (grid.empty()) fail(fmt::format("light {} has no map face", light), scene.file.string());
   const glm::dvec3 eye = glm::dvec3(camera.world_from_camera[3]) - rays.origin();
   const auto offsets = disc(texels);

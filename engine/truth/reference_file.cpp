@@ -175,6 +175,7 @@ void hash_view(KeyHash& hash, const Camera& camera, const ReferenceSettings& set
   hash.values(camera.world_from_camera);
   for (const double v : {camera.fov_y, camera.near, camera.aspect.value_or(-1.0)}) hash.value(v);
   if (camera.far) hash.value(*camera.far);
+  if (camera.span) hash.value(camera.span->x), hash.value(camera.span->y);
   for (const uint32_t v : {settings.width, settings.height, settings.samples}) hash.value(v);
 }
 

@@ -11,6 +11,7 @@
 #include "engine/render/environment.h"
 #include "engine/render/frame_data.h"
 #include "engine/render/gpu_scene.h"
+#include "engine/render/render_settings.h"
 #include "engine/scene/scene.h"
 
 namespace gnomon {
@@ -51,7 +52,8 @@ class LightViews : public Pass {
   }
 
   void prepare(Environment& e) override {
-    fit_.emplace(e.scene(), kFaceBorderPart, 1);
+    const double aspect = double(e.settings().width) / e.settings().height;
+    fit_.emplace(e.scene(), kFaceBorderPart, 1, SeenFrom{e.scene().cameras[e.settings().camera], aspect});
     split_ = {uint32_t(e.params().integer("cascades")), e.params().number("split_ratio")};
     fitted_ = fit_->views(e.scene());
     set_ = view_set(split(e.gpu_scene()));

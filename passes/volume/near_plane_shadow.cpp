@@ -53,9 +53,15 @@ Points separating_axes(const Points& hull) {
 
 std::vector<glm::dvec3> near_pyramid(const Camera& camera, double aspect) {
   constexpr double kMargin = 1.01;
-  const double y = kMargin * camera.near * half_extent(camera, aspect).y, x = y * aspect;
+  const double reach = camera.span ? 1.0 : camera.near;
+  const double y = kMargin * reach * half_extent(camera, aspect).y, x = y * aspect;
   const double z = -kMargin * camera.near;
   std::vector<glm::dvec3> points;
+  if (camera.span) {  // rays start all over the near plane
+    for (const glm::dvec3 p : {glm::dvec3(0.0, 0.0, z), {-x, -y, z}, {x, -y, z}, {-x, y, z}, {x, y, z}})
+      points.push_back(glm::dvec3(camera.world_from_camera * glm::dvec4(p, 1.0)));
+    return points;
+  }
   for (const glm::dvec3 p : {glm::dvec3(0.0), {-x, -y, z}, {x, -y, z}, {-x, y, z}, {x, y, z}})
     points.push_back(glm::dvec3(camera.world_from_camera * glm::dvec4(p, 1.0)));
   return points;

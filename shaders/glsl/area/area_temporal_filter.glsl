@@ -42,7 +42,7 @@ float filtered_share(ivec2 at, ShadowHistory h, int count) {
   // from one to the next.
   float width = params.spread * penumbra_width(z, h.blocker, uintBitsToFloat(push.part.x)) * inversesqrt(max(h.tests, 1.0));
   float angle = 6.2831853 * interleaved_gradient_noise(at);
-  vec2 pixel = depth * vec2(length(frame.ray_dx.xyz), length(frame.ray_dy.xyz));
+  vec2 pixel = image_depth(device_depth) * vec2(length(frame.ray_dx.xyz), length(frame.ray_dy.xyz));
   float share = hidden_share(h);
   Neighbourhood around = Neighbourhood(at, depth, depth_gradient(p, n, depth), min(width / pixel, vec2(params.max_radius)),
                                        vec2(cos(angle), sin(angle)), share, 1.0);

@@ -12,8 +12,13 @@ const float STEEPEST = 0.1;        // change of depth from pixel to pixel, of it
 
 // Relative change of the reciprocal view depth of the plane through `p` with normal `n`, per pixel to the right and down.
 vec2 depth_gradient(vec3 p, vec3 n, float depth) {
+#ifdef ORTHOGRAPHIC_CAMERA
+  float distance = depth * dot(n, view_axis());
+  vec2 g = image_depth(0.0) * vec2(dot(n, frame.ray_dx.xyz), dot(n, frame.ray_dy.xyz));  // at any depth
+#else
   float distance = dot(n, p);
   vec2 g = depth * vec2(dot(n, frame.ray_dx.xyz), dot(n, frame.ray_dy.xyz));
+#endif
   return clamp(g / (abs(distance) > 1e-6 * depth ? distance : 1e-6 * depth), vec2(-STEEPEST), vec2(STEEPEST));
 }
 

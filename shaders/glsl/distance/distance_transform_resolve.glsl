@@ -36,7 +36,7 @@ bool differs(ivec2 corner, float value, vec3 p, vec3 n, float z, Light light, Li
 // Pixels of the 3x3 window count when they and the pixel itself lie on one surface.
 bool is_site(ivec2 pixel, float device_depth) {
   vec3 p = relative_position(pixel, device_depth), n = octahedral_decode(geometric_at(pixel).xy);
-  float z = view_depth(device_depth), value = source_at(pixel, push.layer).x;
+  float z = image_depth(device_depth), value = source_at(pixel, push.layer).x;
   Light light = lights[light_of(push.layer)];
   LightView view = widest_view(light_of(push.layer));
   bool found_any = differs(pixel, value, p, n, z, light, view) || differs(pixel + ivec2(1, 0), value, p, n, z, light, view) ||
@@ -53,8 +53,13 @@ int pixels_of_reach(ivec2 pixel, float device_depth) {
   int most = size.x + size.y;
   float z = view_depth(device_depth), room = z - push.reach;
   float pixel_size = min(length(frame.ray_dx.xyz), length(frame.ray_dy.xyz));  // at view depth 1
+#ifdef ORTHOGRAPHIC_CAMERA
+  float pixels = push.reach / (image_depth(device_depth) * pixel_size);
+  return pixels < float(most) ? int(ceil(pixels)) : most;
+#else
   float pixels = push.reach * length(relative_position(pixel, device_depth)) / (z * room * pixel_size);
   return room > 0.0 && pixels < float(most) ? int(ceil(pixels)) : most;
+#endif
 }
 
 void main() {

@@ -64,9 +64,14 @@ float footprint_level(ivec2 pixel, Query query) {
   LightView view = query.view;
   float size = map_size(), most = 1.0, least_facing = 1e-2 * length(p);
   for (int axis = 0; axis < 2; ++axis) {
-    vec3 ray = p + view_depth(device_depth) * (axis == 0 ? frame.ray_dx.xyz : frame.ray_dy.xyz);
+    vec3 ray = p + image_depth(device_depth) * (axis == 0 ? frame.ray_dx.xyz : frame.ray_dy.xyz);
+#ifdef ORTHOGRAPHIC_CAMERA
+    float facing = dot(n, view_axis());
+    vec3 neighbour = ray + (abs(facing) > 1e-4 ? dot(n, p - ray) / facing : 0.0) * view_axis();
+#else
     float along = dot(n, p), facing = dot(n, ray);
     vec3 neighbour = ray * (abs(facing) > least_facing * 1e-2 ? along / facing : 1.0);
+#endif
     vec3 projected = light_project(view, light_space(view, vec4(neighbour, 1.0)));
     float moved = distance(projected.xy * size, query.position);
     if (projected.z > 0.0) most = max(most, min(moved, size));

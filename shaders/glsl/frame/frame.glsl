@@ -7,10 +7,12 @@
 layout(set = 0, binding = 0, std140) uniform Frame {
   mat4 clip_from_relative;
   mat4 view_from_relative;
-  vec4 ray_corner;  // relative position at view depth 1 of the image's top left corner
+  vec4 ray_corner;  // relative position at view depth 1 of the image's top left corner; w: see image_depth()
   vec4 ray_dx, ray_dy;
   vec4 viewport;    // width, height, 1/width, 1/height
-  vec4 depth;       // near plane, 1 when reversed z, far plane (0: none) beyond which nothing is drawn
+  // Near plane, 1 when reversed z, far plane (0: none) beyond which nothing is drawn; w: of an orthographic camera the view
+  // depth at which its device depth ends.
+  vec4 depth;
   uvec4 counts;     // lights, unused, frame index
   mat4 previous_clip_from_relative;  // the previous frame's camera; positions relative to this frame's eye
 } frame;
@@ -55,13 +57,38 @@ layout(set = 0, binding = 4, std430) readonly buffer TriangleNormals { uint tria
 layout(set = 0, binding = 5, std430) readonly buffer Positions { float scene_positions[]; };
 layout(set = 0, binding = 6, std430) readonly buffer Indices { uint scene_indices[]; };
 
-// Depth of the camera's infinite projection. Reversed: d = near / z; standard: d = 1 - near / z.
 bool is_background(float device_depth) { return frame.depth.y != 0.0 ? device_depth <= 0.0 : device_depth >= 1.0; }
+// Relative position at view depth 1 of a place in the image, in pixels; orthographic cameras: at the eye's depth, in parts of
+// image_depth().
+vec3 view_ray(vec2 place) { return frame.ray_corner.xyz + place.x * frame.ray_dx.xyz + place.y * frame.ray_dy.xyz; }
+// Unit vector along the camera's axis, away from the eye.
+vec3 view_axis() { return -vec3(frame.view_from_relative[0].z, frame.view_from_relative[1].z, frame.view_from_relative[2].z); }
+
+// The camera's kind is one for all shaders of a run, so that perspective ones have no branch for it.
+#ifdef ORTHOGRAPHIC_CAMERA
+// Depth is linear. Standard: d = (z - near) / (end - near); reversed: 1 - d.
+float view_depth(float device_depth) {
+  return mix(frame.depth.x, frame.depth.w, frame.depth.y != 0.0 ? 1.0 - device_depth : device_depth);
+}
+// What sizes in the image go with: frame.ray_dx times this is a pixel's step in the world. For a perspective camera the view
+// depth; an orthographic one shows everything as large as one with 90 degrees from here would show it.
+float image_depth(float device_depth) { return frame.ray_corner.w; }
+vec3 relative_position(ivec2 pixel, float device_depth) {
+  return frame.ray_corner.w * view_ray(vec2(pixel) + 0.5) + view_depth(device_depth) * view_axis();
+}
+vec3 plane_position(vec3 p, vec3 n, vec2 place) {
+  vec3 start = frame.ray_corner.w * view_ray(place), axis = view_axis();
+  float facing = dot(n, axis);
+  return abs(facing) > 1e-6 ? start + (dot(n, p - start) / facing) * axis : p;  // 1e-6: sine of the angle between axis and plane
+}
+// View depth of what a projection of positions gives.
+float projected_depth(vec4 clip) { return view_depth(clip.z); }
+#else
+// Depth of the camera's infinite projection. Reversed: d = near / z; standard: d = 1 - near / z.
 float view_depth(float device_depth) {
   return frame.depth.x / (frame.depth.y != 0.0 ? device_depth : 1.0 - device_depth);
 }
-// Relative position at view depth 1 of a place in the image, in pixels.
-vec3 view_ray(vec2 place) { return frame.ray_corner.xyz + place.x * frame.ray_dx.xyz + place.y * frame.ray_dy.xyz; }
+float image_depth(float device_depth) { return view_depth(device_depth); }
 // Relative position of a pixel's centre: view ray times linear depth, so nothing cancels at far origins.
 vec3 relative_position(ivec2 pixel, float device_depth) { return view_depth(device_depth) * view_ray(vec2(pixel) + 0.5); }
 // Relative position of what a place in the image shows of the plane through `p` with unit normal `n`; `p` itself where the
@@ -72,6 +99,8 @@ vec3 plane_position(vec3 p, vec3 n, vec2 place) {
   bool in_front = along * to_plane > 1e-6 * length(ray) * abs(to_plane);  // 1e-6: sine of the angle between ray and plane
   return in_front ? (to_plane / along) * ray : p;
 }
+float projected_depth(vec4 clip) { return clip.w; }
+#endif
 // The place in the image, in pixels, of a relative position in front of the camera.
 vec2 image_place(vec3 p) {
   vec4 clip = frame.clip_from_relative * vec4(p, 1.0);
@@ -82,7 +111,7 @@ vec2 image_place(vec3 p) {
 // view depth there, not above 0 behind that camera.
 vec3 previous_image_place(vec3 p) {
   vec4 clip = frame.previous_clip_from_relative * vec4(p, 1.0);
-  return vec3((0.5 + 0.5 * clip.xy / clip.w) * frame.viewport.xy, clip.w);
+  return vec3((0.5 + 0.5 * clip.xy / clip.w) * frame.viewport.xy, projected_depth(clip));
 }
 
 // Unit vector from `p` to the light, and the distance (infinite for directional lights).
@@ -96,9 +125,16 @@ vec3 to_light(Light light, vec3 p, out float distance) {
   return d / distance;
 }
 
+// Cosine of the angle to the light below which a surface is edge-on: some roundings of a rotation in floats, so that they do not
+// decide whether a wall faces the sun above it.
+const float EDGE_ON = 1e-6;
+
 // Does a surface with unit geometric normal `n` at `p` face the light? Where not, it is in shadow whatever lies between.
 bool faces_light(Light light, vec3 p, vec3 n) {
-  return dot(n, is_directional(light) ? -light.direction.xyz : light.position.xyz - p) > 0.0;
+  if (is_directional(light)) return dot(n, -light.direction.xyz) > EDGE_ON;
+  vec3 way = light.position.xyz - p;
+  vec3 size = abs(way);
+  return dot(n, way) > EDGE_ON * max(size.x, max(size.y, size.z));
 }
 
 // Beyond its range a light shines on nothing.

@@ -36,7 +36,9 @@ vec3 geometric_normal() {
 }
 
 void main() {
-#ifdef FAR_PLANE  // the projection's is infinitely far
+#if defined(FAR_PLANE) && defined(ORTHOGRAPHIC_CAMERA)
+  if (view_depth(gl_FragCoord.z) > frame.depth.z) discard;
+#elif defined(FAR_PLANE)  // the projection's is infinitely far
   if (gl_FragCoord.w * frame.depth.z < 1.0) discard;
 #endif
 #ifdef PLAIN
@@ -50,7 +52,12 @@ void main() {
   vec3 geometric = geometric_normal();
   vec3 shading = normalize(in_normal);
   // Double-sided meshes are seen from either side: normals turn to the camera.
-  if (in_draw.y != 0u && dot(geometric, in_relative) > 0.0) geometric = -geometric;
+#ifdef ORTHOGRAPHIC_CAMERA
+  vec3 ray = view_axis();
+#else
+  vec3 ray = in_relative;
+#endif
+  if (in_draw.y != 0u && dot(geometric, ray) > 0.0) geometric = -geometric;
   if (dot(shading, geometric) < 0.0) shading = -shading;
 #ifdef NORMAL
   out_normal = octahedral_encode(shading);

@@ -23,8 +23,12 @@ vec4 triangle_behind_all() {
 layout(location = 0) flat in vec4 pixel_rays[PIXEL_RAYS];
 
 // As relative_position() of frame.glsl, for the fragment's pixel.
+#ifdef ORTHOGRAPHIC_CAMERA
+vec3 fragment_position(float device_depth) { return relative_position(ivec2(gl_FragCoord.xy), device_depth); }
+#else
 vec3 fragment_position(float device_depth) {
   float z = pixel_rays[0].w / (pixel_rays[1].w != 0.0 ? device_depth : 1.0 - device_depth);
   return z * (pixel_rays[0].xyz + gl_FragCoord.x * pixel_rays[1].xyz + gl_FragCoord.y * pixel_rays[2].xyz);
 }
+#endif
 #endif

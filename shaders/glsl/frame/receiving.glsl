@@ -7,7 +7,7 @@
 
 struct Receiving {
   vec3 position, normal;  // relative; geometric
-  float depth;            // along the view axis, world units
+  float depth;            // image_depth(), world units
   bool receives;          // geometry in the map that faces the light: the shadow map decides
 };
 
@@ -16,7 +16,7 @@ Receiving make_receiving(ivec2 pixel, float device_depth, vec2 encoded, Light li
   Receiving r;
   r.position = relative_position(pixel, device_depth);
   r.normal = octahedral_decode(encoded);
-  r.depth = view_depth(device_depth);
+  r.depth = image_depth(device_depth);
   r.receives = !is_background(device_depth) && faces_light(light, r.position, r.normal) && in_map(light, widest, r.position);
   return r;
 }

@@ -6,7 +6,7 @@
 // and where the receiver turns away from the light.
 //
 // The width is that of (4.4) and (4.5): (4.4) has no unit; here `width` is in pixels at view depth `reference_depth`, and goes
-// with 1 / depth. With an image `width` it is what the penumbra covers at the pixel's depth.
+// with 1 / depth (image_depth()). With an image `width` it is what the penumbra covers at the pixel's depth.
 #include "frame/receiving.glsl"
 #include "lib/same_surface.glsl"
 #include "lib/soft_shadow.glsl"

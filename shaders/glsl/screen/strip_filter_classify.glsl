@@ -18,14 +18,14 @@ void main() {
   for (int i = 0; i < CELL * CELL; ++i) {
     ivec2 pixel = min(cell * CELL + ivec2(i % CELL, i / CELL), size - 1);
     float device_depth = depth_at(pixel).x;
-    if (!is_background(device_depth)) reach = max(reach, half_width(pixel, light, view_depth(device_depth)));
+    if (!is_background(device_depth)) reach = max(reach, half_width(pixel, light, image_depth(device_depth)));
   }
 #else
   for (int i = 0; i < CELL * CELL / 4; ++i) {
     ivec2 corner = cell * CELL + 2 * ivec2(i % (CELL / 2), i / (CELL / 2)) + 1;
     vec4 depths = textureGather(depth, vec2(min(corner, size - 1)) / vec2(size));
     for (int k = 0; k < 4; ++k)
-      if (!is_background(depths[k])) reach = max(reach, half_width(view_depth(depths[k])));
+      if (!is_background(depths[k])) reach = max(reach, half_width(image_depth(depths[k])));
   }
 #endif
   cell_states[(light * cells.y + cell.y) * cells.x + cell.x] = content;

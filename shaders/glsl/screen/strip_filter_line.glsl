@@ -105,7 +105,7 @@ Receiving surface_at(Strip strip, int place, bool keep) {
   uvec2 packed = imageLoad(surfaces, at).xy;
   float device_depth = uintBitsToFloat(packed.x);
   Receiving r = Receiving(relative_position(at.xy, device_depth), octahedral_decode(unpackSnorm2x16(packed.y)),
-                          view_depth(device_depth), packed.y != RECEIVES_NOT);
+                          image_depth(device_depth), packed.y != RECEIVES_NOT);
 #else
   float device_depth = depth_at(at.xy).x;
   vec2 encoded = geometric_at(at.xy).xy;  // of two signed normalised 16-bit numbers: nothing is lost

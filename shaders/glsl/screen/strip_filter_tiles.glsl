@@ -21,12 +21,12 @@ void main() {
   for (int i = 0; i < 4; ++i) {
     ivec2 pixel = min(corner + ivec2(i % 2, i / 2), size - 1);
     float device_depth = depth_at(pixel).x;
-    if (!is_background(device_depth)) reach = max(reach, half_width(pixel, tile.layer, view_depth(device_depth)));
+    if (!is_background(device_depth)) reach = max(reach, half_width(pixel, tile.layer, image_depth(device_depth)));
   }
 #else
   vec4 depths = textureGather(depth, vec2(min(corner + 1, size - 1)) / vec2(size));
   for (int k = 0; k < 4; ++k)
-    if (!is_background(depths[k])) reach = max(reach, half_width(view_depth(depths[k])));
+    if (!is_background(depths[k])) reach = max(reach, half_width(image_depth(depths[k])));
 #endif
   atomicMax(control[REACH], uint(ceil(reach)));
 }

@@ -17,7 +17,11 @@ const float DEPTH_STEP = 2.4e-7;    // rounding of a device depth near 1, which 
 bool on_plane(ivec2 at, float device_depth) {
   float z = view_depth(device_depth);
   float tolerance = push.tolerance + DEPTH_PART * z;
+#ifdef ORTHOGRAPHIC_CAMERA
+  tolerance += DEPTH_STEP * (frame.depth.w - frame.depth.x);
+#else
   if (frame.depth.y == 0.0) tolerance += DEPTH_STEP * z * z / frame.depth.x;
+#endif
   vec3 n = octahedral_decode(geometric_at(at).xy);
   return abs(dot(n, push.plane.xyz)) >= LEAST_COSINE &&
          abs(dot(push.plane, vec4(relative_position(at, device_depth), 1.0))) <= tolerance;

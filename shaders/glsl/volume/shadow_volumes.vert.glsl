@@ -29,6 +29,13 @@ void main() {
   bool far = (reference.x & AT_INFINITY) != 0;
   Light light = lights[push.light];
   vec3 away = is_directional(light) ? light.direction.xyz : relative - light.position.xyz;
-  gl_Position = frame.clip_from_relative * (far ? vec4(away, 0.0) : vec4(relative, 1.0));
+#ifdef ORTHOGRAPHIC_CAMERA
+  // At infinity the camera would see nothing of a volume along its axis; so far away it sees where it ends, behind everything.
+  const float NEARLY_INFINITE = 1e-12;  // 1 / distance, world units
+  vec4 end = vec4(normalize(away), NEARLY_INFINITE);
+#else
+  vec4 end = vec4(away, 0.0);
+#endif
+  gl_Position = frame.clip_from_relative * (far ? end : vec4(relative, 1.0));
 #endif
 }

@@ -7,8 +7,7 @@ layout(location = 0) out float out_visibility;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   float device_depth = depth_at(at).x;
-  float light_distance;
-  vec3 l = to_light(lights[push.light], relative_position(at, device_depth), light_distance);
-  bool lit = is_background(device_depth) || dot(octahedral_decode(geometric_at(at).xy), l) > 0.0;
+  vec3 n = octahedral_decode(geometric_at(at).xy);
+  bool lit = is_background(device_depth) || faces_light(lights[push.light], relative_position(at, device_depth), n);
   out_visibility = lit ? 1.0 : 0.0;
 }

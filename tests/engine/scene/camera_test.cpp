@@ -75,5 +75,27 @@ TEST(Camera, TheFarPlaneIsRead) {
   EXPECT_FALSE(warns(load(draft), "zfar"));
 }
 
+TEST(Camera, OrthographicOnesAreRead) {
+  Draft draft;
+  draft.document["nodes"].push_back({{"camera", 0}});
+  draft.document["scenes"][0]["nodes"] = {0, 1};
+  const nlohmann::json view = {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 20}};
+  draft.document["cameras"] = {{{"type", "orthographic"}, {"orthographic", view}}};
+  const Scene scene = load(draft);
+  ASSERT_TRUE(scene.cameras[0].span);
+  EXPECT_EQ(*scene.cameras[0].span, glm::dvec2(3, 2));
+  EXPECT_EQ(scene.cameras[0].near, 0);
+  EXPECT_EQ(scene.cameras[0].far, 20);
+  EXPECT_EQ(half_extent(scene.cameras[0], 1.5), glm::dvec2(3, 2));
+  EXPECT_EQ(half_extent(scene.cameras[0], 3), glm::dvec2(6, 2));
+  EXPECT_NEAR(half_extent(scene.cameras[0], 1).y, 3, 1e-12);
+  EXPECT_FALSE(warns(scene, "camera"));
+  draft.document["cameras"][0]["orthographic"]["xmag"] = 0;
+  EXPECT_TRUE(warns(load(draft), "xmag or ymag is not a number other than 0"));
+  draft.document["cameras"][0]["orthographic"]["xmag"] = -3;
+  EXPECT_EQ(load(draft).cameras[0].span->x, 3);
+  EXPECT_TRUE(warns(load(draft), "not mirrored"));
+}
+
 }  // namespace
 }  // namespace gnomon

@@ -165,7 +165,7 @@ TEST(NodeVisibility, HidesMeshesAndLightsBelowButNoCamera) {
   const Scene scene = load(draft);
   EXPECT_EQ(scene.instances.size(), 1u);
   EXPECT_TRUE(warns(scene, "no light"));
-  EXPECT_FALSE(warns(scene, "no perspective camera"));
+  EXPECT_FALSE(warns(scene, "no camera, a default one"));
   EXPECT_FALSE(warns(scene, "KHR_node_visibility"));
   draft.document["scenes"][0]["nodes"] = {1};
   EXPECT_NE(error_of("a.glb", draft.bytes()).find("hidden by KHR_node_visibility"), std::string::npos);

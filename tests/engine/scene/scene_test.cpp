@@ -49,7 +49,7 @@ TEST(SceneLoad, SquareGetsFlatNormalsDefaultCameraAndLight) {
   EXPECT_EQ(scene.bounds.max, glm::dvec3(1, 1, 0));
   EXPECT_EQ(scene.cameras.size(), 1u);
   EXPECT_EQ(scene.lights.size(), 1u);
-  EXPECT_TRUE(warns(scene, "no perspective camera"));
+  EXPECT_TRUE(warns(scene, "no camera, a default one"));
   EXPECT_TRUE(warns(scene, "no light"));
 }
 
