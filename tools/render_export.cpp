@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/error/truth.h"
+#include "bench/run/progress.h"
 #include "engine/base/error.h"
 #include "engine/light/scene_facts.h"
 #include "engine/plan/compile.h"
