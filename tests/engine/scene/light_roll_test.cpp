@@ -28,14 +28,14 @@ TEST(LightRoll, SunsHaveTheAxesOfTheirDirection) {
         for (int r = 0; r < 4; ++r) EXPECT_NEAR(frame[c][r], first[c][r], 1e-15);
       EXPECT_NEAR(glm::determinant(frame), 1, 1e-12);
       EXPECT_NEAR(glm::distance(glm::dvec3(frame[2]), glm::normalize(from)), 0, 1e-12);
-      EXPECT_NEAR(frame[0].y, 0, 1e-12);
+      EXPECT_GE(frame[1].y, -1e-12);
     }
 }
 
 TEST(LightRoll, PointLightsHaveTheWorldsAxes) {
   const Scene scene = lit(LightType::point, {1, 2, 3}, 0.4);
   EXPECT_EQ(glm::dmat3(scene.lights[0].world_from_light), glm::dmat3(1.0));
-  EXPECT_EQ(glm::dvec3(scene.lights[0].world_from_light[3]), glm::dvec3(1, 2, 3));
+  EXPECT_NEAR(glm::distance(glm::dvec3(scene.lights[0].world_from_light[3]), glm::dvec3(1, 2, 3)), 0, 1e-12);
 }
 
 TEST(LightRoll, AxesWithinRoundingStay) {

@@ -248,12 +248,14 @@ TEST(SceneLoad, CamerasAndLights) {
       {"extensions":{"KHR_lights_punctual":{"light":2}},"extras":{"area_light":{"width":-1,"height":1}}},
       {"extensions":{"KHR_lights_punctual":{"light":3}}}]})"));
   const Scene scene = load(draft);
-  ASSERT_EQ(scene.cameras.size(), 1u);
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  EXPECT_EQ(scene.cameras[1].span, glm::dvec2(1, 1));
+  EXPECT_EQ(scene.cameras[1].far, 10);
   EXPECT_EQ(scene.cameras[0].fov_y, 0.9);
   EXPECT_EQ(scene.cameras[0].near, 0.25);
   EXPECT_EQ(scene.cameras[0].aspect, 2.0);
   EXPECT_NEAR(glm::determinant(glm::dmat3(scene.cameras[0].world_from_camera)), 1.0, 1e-12);
-  EXPECT_TRUE(warns(scene, "orthographic"));
+  EXPECT_FALSE(warns(scene, "orthographic"));
   ASSERT_EQ(scene.lights.size(), 4u);
   EXPECT_EQ(scene.lights[0].type, LightType::point);
   EXPECT_EQ(scene.lights[0].color, glm::dvec3(1, 0.5, 0.25));
