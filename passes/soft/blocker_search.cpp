@@ -5,8 +5,10 @@
 #include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
+#include "passes/frame/pixel_list.h"
 #include "passes/map/map_traits.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/soft/listed_pixels.h"
 
 namespace gnomon {
 namespace {
@@ -23,17 +25,14 @@ class BlockerSearch : public Pass {
         d.choice(
             "protocol", "exact", {"exact", "thesis"},
             "exact: the region that the light's size asks for, shrunk to that of the nearest depth in it; "
-            "thesis: as many texels as there are taps, whatever the light (Macedo 2018, ch. 5.5.1)") ==
-        "exact";
-    const int64_t taps =
-        d.integer("taps", 9, 1, 64, "taps", "a side of the region; when it has fewer texels, each is one");
+            "thesis: that of blockers on the near plane, as it is (Macedo 2018, ch. 5.5.1)") == "exact";
+    d.integer("taps", 9, 1, 64, "taps", "a side of the region; when it has fewer texels, each is one");
     const std::string pyramid = "exact: min_max_pyramid of the shadow map";
     if (exact)
       d.input("pyramid", Access::sampled, true, pyramid);
     else
       d.optional_input("pyramid", Access::sampled, true, pyramid);
     read_pyramid(d, "pyramid");
-    if (!exact) d.reads_around("shadow_map", uint32_t(taps / 2 + 1));
     d.output(
         "blocker", Access::storage_write, true, image,
         "mean linear depth of what hides some of the light, from it, world units; 0: nothing does, or the "
@@ -41,6 +40,7 @@ class BlockerSearch : public Pass {
     d.output(
         "width", Access::storage_write, true, image,
         "of the penumbra at the receiver, parallel to the light's larger side, world units; a layer a light");
+    declare_pixel_list(d, image.extent, "pixels that something may hide some of one light from");
   }
 
   Need need(const SceneFacts& facts, const Params&) const override {
@@ -52,13 +52,15 @@ class BlockerSearch : public Pass {
   }
 
   void prepare(Environment& e) override {
-    search_.prepare(e, "soft/blocker_search.glsl", {}, {"blocker", "soft/blocker_search_none.glsl"});
+    const PerLightOutput output{"blocker", "soft/blocker_search_none.glsl"};
+    find_.prepare(e, "soft/blocker_search_find.glsl", {}, output);
+    search_.prepare(e, "soft/blocker_search.glsl", {}, output);
     report_bias(e);
   }
-  void record(Context& c) override { search_.dispatch_all(c); }
+  void record(Context& c) override { dispatch_listed(c, find_, search_, c.shape("blocker")); }
 
  private:
-  PerLight search_;
+  PerLight find_, search_;
 };
 
 GNOMON_PASS("blocker_search", BlockerSearch);

@@ -1,5 +1,6 @@
 // What blockers and penumbrae are in a light's map: lib/soft_shadow.glsl for the receiver of a query. After
 // map/shadow_query.glsl.
+#include "lib/light_horizon.glsl"
 #include "lib/light_shape.glsl"
 #include "lib/min_max.glsl"
 #include "lib/soft_shadow.glsl"
@@ -11,10 +12,29 @@ float size_of(Light light) {
   vec2 half_size = half_size_of(light);
   return 2.0 * max(half_size.x, half_size.y);
 }
+// What the tangent plane of the pixel's surface hides of the light, whose shape is scaled to the square [-1, 1]^2.
+Horizon horizon_at(ivec2 pixel, LightView view, vec2 half_size) {
+  vec3 n = light_space(view, vec4(octahedral_decode(geometric_at(pixel).xy), 0.0));
+  if (is_orthographic(view)) return directional_horizon(n, half_size);
+  return horizon_of(light_space(view, vec4(relative_position(pixel, depth_at(pixel).x), 1.0)), n, half_size);
+}
 bool is_round(Light light) { return light.size.z == SHAPE_DISC || light.size.z == SHAPE_SPHERE; }
+float share_above(Horizon horizon, bool round_light) { return round_light ? disc_above(horizon) : square_above(horizon); }
 
 float linear_depth(LightView view, float encoded) {
   return ENCODING == ENCODING_LINEAR || is_orthographic(view) ? decode_linear(view, encoded) : decode_perspective(view, encoded);
+}
+
+// For tests over many texels: a kernel that meets a crease of the receiver's own surface, which no texel resolves, is to take it for
+// a part of the receiver. Further shift of the plane that is followed, texels.
+const float KERNEL_SHIFT = 1.0, KERNEL_SHIFT_SLOPE = 0.1;
+Query kernel_query(Query query) {
+#if BIAS == BIAS_RECEIVER_PLANE
+  float texel = texel_world_size(query.view, query.plane.z, map_size()), slope = query.plane.slope;
+  float further = texel * (KERNEL_SHIFT + KERNEL_SHIFT_SLOPE * slope);
+  query.plane = bias_receiver(query.view, query.plane, bias_world(texel, slope) + further);
+#endif
+  return query;
 }
 
 // World units, at the receiver.
@@ -32,25 +52,47 @@ vec2 half_kernel(LightView view, vec2 half_size, float size, float penumbra, flo
 #ifdef HAS_PYRAMID
 const int FINER = 2;  // levels: 4 to 5 blocks on an axis, which reach beyond the texels by less than half of them
 
-// Least and greatest depth of blocks of the pyramid that hold the texels from `low` to `high`, cut off at the map.
-vec2 pyramid_range(ivec2 low, ivec2 high, int layer) {
+// The blocks of a level of the pyramid that hold some texels.
+struct PyramidBlocks {
+  ivec2 first, last;
+  int level;
+};
+
+// Of the texels from `low` to `high`, cut off at the map. `finer`: levels below the one of which at most 2 blocks on an axis hold
+// them.
+PyramidBlocks pyramid_blocks(ivec2 low, ivec2 high, int finer) {
   ivec2 last = textureSize(shadow_map, 0).xy - 1;
   low = clamp(low, ivec2(0), last);
   high = clamp(high, ivec2(0), last);
   ivec2 texels = high - low + 1;
-  int level = clamp(pyramid_level(max(texels.x, texels.y)) - FINER, 0, textureQueryLevels(pyramid) - 1);
+  int level = clamp(pyramid_level(max(texels.x, texels.y)) - finer, 0, textureQueryLevels(pyramid) - 1);
   // Not textureSize() of the level: lavapipe answers all invocations of a subgroup with that of the first.
   ivec2 blocks = max(textureSize(pyramid, 0).xy >> level, ivec2(1));
-  ivec2 from = pyramid_block(low, level, blocks), to = pyramid_block(high, level, blocks);
+  return PyramidBlocks(pyramid_block(low, level, blocks), pyramid_block(high, level, blocks), level);
+}
+
+// Least and greatest depth of blocks of the pyramid that hold the texels from `low` to `high`, cut off at the map.
+vec2 pyramid_range(ivec2 low, ivec2 high, int layer) {
+  PyramidBlocks blocks = pyramid_blocks(low, high, FINER);
   vec2 range = vec2(1.0, 0.0);
-  int y = from.y;
+  int y = blocks.first.y;
   do {
-    int x = from.x;
+    int x = blocks.first.x;
     do {
-      range = min_max_join(range, pyramid_at(ivec2(x, y), layer, level).xy);
-    } while (++x <= to.x);
-  } while (++y <= to.y);
+      range = min_max_join(range, pyramid_at(ivec2(x, y), layer, blocks.level).xy);
+    } while (++x <= blocks.last.x);
+  } while (++y <= blocks.last.y);
   return range;
+}
+
+// The same of four blocks, which may reach farther.
+vec2 rough_pyramid_range(ivec2 low, ivec2 high, int layer) {
+  PyramidBlocks blocks = pyramid_blocks(low, high, 0);
+  vec2 left = min_max_join(pyramid_at(blocks.first, layer, blocks.level).xy,
+                           pyramid_at(ivec2(blocks.first.x, blocks.last.y), layer, blocks.level).xy);
+  vec2 right = min_max_join(pyramid_at(ivec2(blocks.last.x, blocks.first.y), layer, blocks.level).xy,
+                            pyramid_at(blocks.last, layer, blocks.level).xy);
+  return min_max_join(left, right);
 }
 #endif
 

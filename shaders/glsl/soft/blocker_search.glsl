@@ -1,24 +1,22 @@
-// Mean depth of what hides some of a light from each camera pixel (Fernando 2005; Macedo 2018, eq. 5.1), and the width of its
+// Mean depth of what hides some of a light from each listed pixel (Fernando 2005; Macedo 2018, eq. 5.1), and the width of its
 // penumbra (5.2). Depths are linear; sums have no epsilon, and no blocker is told as such.
 //
 // PROTOCOL_EXACT: the search begins with the region that blockers on the near plane could be in, and shrinks it to that of the
 // nearest depth in it until it no longer changes, by a min-max pyramid. All blockers of the region count, also those beside the
-// light. PROTOCOL_THESIS (ch. 5.5.1): a square of a constant number of texels.
+// light. PROTOCOL_THESIS (ch. 5.5.1): the first of these regions, as it is, by a constant number of taps.
+#include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"
 #include "map/light_kernel.glsl"
 #include "map/search_region.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
-Region square_region(Query query) {
-  ivec2 texel = ivec2(floor(query.position));
-  return Region(texel - params.taps / 2, texel + (params.taps - 1) / 2, true, NO_BLOCKER);
-}
+const int UMBRA_TAPS = 3;  // where all of the region blocks: any mean of it will do
 
 // x: sum of the blockers' depths among so many taps a side, evenly spread over the region; y: their number. When the region has
 // no more texels a side than taps, each is one tap.
 vec2 blockers_in(Query query, Region region) {
-  ivec2 texels = region.high - region.low + 1, taps = min(texels, ivec2(params.taps)), last = textureSize(shadow_map, 0).xy - 1;
+  ivec2 texels = region.high - region.low + 1, taps = min(texels, ivec2(region.all_block ? UMBRA_TAPS : params.taps)), last = textureSize(shadow_map, 0).xy - 1;
   vec2 sum = vec2(0.0);
   int y = 0;
   do {
@@ -39,23 +37,22 @@ float find_blocker(Query query, Light light) {
 #if PROTOCOL == PROTOCOL_EXACT
   Region region = find_region(query, light);
 #else
-  Region region = square_region(query);
+  Region region = first_region(query, half_size_of(light), size_of(light));
 #endif
   if (!region.blocks) return NO_BLOCKER;
   vec2 sum = blockers_in(query, region);
   float z_b = sum.y > 0.0 ? sum.x / sum.y : region.nearest;
-  return min(z_b, query.plane.z);
+  return blocker_before(query, z_b);
 }
 
 void main() {
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(at, imageSize(blocker).xy))) return;
+  ivec2 at;
+  if (!listed_pixel(list_slot(), imageSize(blocker).x, at)) return;
   Query query;
-  int state = make_query(at, query);
+  make_query(at, query);
   Light light = lights[push.light];
-  float size = size_of(light), z_b = NO_BLOCKER;
-  if (state == PIXEL_INSIDE && size > 0.0) z_b = find_blocker(query, light);
-  float penumbra = z_b == NO_BLOCKER ? 0.0 : penumbra_of_blocker(query.view, size, query.plane.z, z_b);
+  float z_b = find_blocker(kernel_query(query), light);
+  float penumbra = z_b == NO_BLOCKER ? 0.0 : penumbra_of_blocker(query.view, size_of(light), query.plane.z, z_b);
   imageStore(blocker, ivec3(at, push.light), vec4(z_b));
   imageStore(width, ivec3(at, push.light), vec4(penumbra));
 }

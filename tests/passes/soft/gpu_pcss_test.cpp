@@ -3,89 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 
-#include "engine/base/error.h"
-#include "engine/graph/graph.h"
-#include "engine/scene/area_light.h"
-#include "tests/engine/truth/analytic_scenes.h"
-#include "tests/passes/hard/hard_shadow_run.h"
+#include "tests/passes/soft/half_plane.h"
 
 namespace gnomon {
 namespace {
 
-constexpr uint32_t kWidth = 128, kHeight = 96;
-constexpr double kReceiver = 8, kBlocker = 4;  // depths from the light, which is at height 8
-
-AreaLight area(AreaLight::Shape shape, double width, double height) {
-  AreaLight area;
-  area.shape = shape;
-  area.width = width;
-  area.height = height;
-  return area;
-}
-
-// A floor at height 0 and, over its half x < 0, a blocker parallel to it; the light above the edge.
-Scene half_plane(const AreaLight& size, double map_fov = 0.5 * M_PI) {
-  Scene scene;
-  analytic::add(scene, analytic::square(12), {0, 0, 0});
-  analytic::add(scene, analytic::square(6), {-6, kReceiver - kBlocker, 0});
-  scene.cameras.push_back(analytic::camera({1.5, 3, 0.02}, {0.3, 0, 0}));
-  scene.lights.push_back(analytic::light(LightType::spot, {0, kReceiver, 0}));
-  scene.lights[0].map_fov = map_fov;
-  scene.lights[0].area = size;
-  return scene;
-}
-
-struct Frame {
-  std::vector<float> visibility, blocker, width;
-};
-
-Frame render(const Scene& scene, const Values& set = {}) {
-  RenderSettings s;
-  s.width = kWidth, s.height = kHeight;
-  s.captures = {"search.blocker", "search.width"};
-  const auto device = hard_shadow::device();
-  const size_t messages = validation_messages(*device).size();
-  Renderer renderer(device, std::make_shared<Scene>(scene), load_graph(find_graph("pcss"), set), s);
-  renderer.render(TimingMode::none);
-  const auto& all = validation_messages(*device);
-  for (size_t i = messages; i < all.size(); ++i) ADD_FAILURE() << all[i];
-  const auto plane = [&](const char* name) {
-    const Image image = renderer.read(name);
-    return std::vector<float>(image.plane(0).begin(), image.plane(0).end());
-  };
-  return {plane("visibility"), plane("search.blocker"), plane("search.width")};
-}
-
-// Where each pixel's receiver is, for those that count.
-struct Place {
-  size_t pixel;
-  glm::dvec3 position;
-};
-std::vector<Place> places(const Scene& scene) {
-  ReferenceSettings r;
-  r.width = kWidth, r.height = kHeight;
-  const Reference reference = ReferenceTracer(scene).trace(r);
-  const glm::dvec3 eye(scene.cameras[0].world_from_camera[3]);
-  std::vector<Place> all;
-  for (size_t i = 0; i < reference.depth.size(); ++i) {
-    if (reference.domain[0][i] != Reference::counted) continue;
-    const glm::dvec3 p = eye + glm::dvec3(reference.position[i]);
-    if (std::abs(p.y) < 1e-3) all.push_back({i, p});
-  }
-  return all;
-}
-
-double penumbra(double light) { return light * (kReceiver - kBlocker) / kBlocker; }
-
-// The share of a light of width w that a half plane leaves; of a disc the segment.
-double rectangle_share(double x, double w) { return std::clamp(0.5 + x / penumbra(w), 0.0, 1.0); }
-double disc_share(double x, double w) {
-  const double d = std::clamp(x / (0.5 * penumbra(w)), -1.0, 1.0);
-  return 1 - (std::acos(d) - d * std::sqrt(1 - d * d)) / M_PI;
-}
+using namespace half_plane_test;
 
 struct Case {
   const char* name;
@@ -164,6 +89,33 @@ TEST(Pcss, SidesOfALightCountByThemselves) {
   for (const Place& p : places(scene))
     ASSERT_NEAR(frame.visibility[p.pixel], rectangle_share(p.position.x, across), 1.0 / 256 + 1e-4)
         << p.position.x;
+}
+
+// A light 1 wide of which the half on the side of its own x axis shines.
+std::vector<std::pair<const char*, Scene>> half_lit() {
+  AreaLight textured = area(AreaLight::Shape::rectangle, 1, 1);
+  textured.emission = 0;
+  Scene by_texture = half_plane(textured);
+  Texture right;  // its left column is black
+  right.width = 2, right.height = 1, right.nearest = true;
+  right.rgba = {0, 0, 0, 255, 255, 255, 255, 255};
+  by_texture.textures.push_back(right);
+  const Scene by_shape = half_plane(polygon_light({{0, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {0, 0.5}}));
+  return {{"texture", by_texture}, {"polygon", by_shape}};
+}
+
+TEST(Pcss, PartsOfALightCountByTheirEmissionAndAreNotFlipped) {
+  for (const auto& [name, scene] : half_lit()) {
+    const double side = scene.lights[0].world_from_light[0].x;
+    ASSERT_NEAR(std::abs(side), 1, 1e-6);
+    const double from = side > 0 ? 0 : -0.5;  // of what shines; it ends 1/2 further
+    const Frame frame = render(scene);
+    for (const Place& p : places(scene)) {
+      // The blocker is halfway: it leaves what is beyond the receiver's mirror image.
+      const double wanted = std::clamp(2 * (from + 0.5 - std::max(-p.position.x, from)), 0.0, 1.0);
+      ASSERT_NEAR(frame.visibility[p.pixel], wanted, 1.0 / 100) << name << ' ' << p.position.x;
+    }
+  }
 }
 
 TEST(Pcss, WidthIsProportionalToTheLight) {
