@@ -22,13 +22,18 @@ constexpr ExponentLimits kFloat{88.7, 42.0}, kHalf{11.08, 5.54};
 // too coarse.
 constexpr double kLogLimit = 10000.0;
 
+// Of powers that are at most 1. A table of pairs tells them apart over 24 of their logarithm.
+constexpr double kDepthExponentLimit = 40.0, kDepthExponent = 24.0;
+
 double standard_exponent(const std::string& basis, bool half) {
+  if (basis == "exponential_depth") return kDepthExponent;
   if (basis == "exponential") return half ? 10.0 : 80.0;
   return half ? 5.0 : 40.0;
 }
 
 double exponent_limit(const std::string& basis, bool half, bool log) {
   if (log) return kLogLimit;
+  if (basis == "exponential_depth") return kDepthExponentLimit;
   const ExponentLimits& limits = half ? kHalf : kFloat;
   return basis == "exponential" ? limits.first : limits.second;
 }
@@ -42,7 +47,7 @@ void refuse_beyond(Declaration& d, const std::string& name, double value, double
 
 VkFormat format_of(const std::string& basis, bool half) {
   if (basis == "exponential") return half ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
-  if (basis == "variance" || basis == "exponential_variance")
+  if (basis == "variance" || basis == "exponential_variance" || basis == "exponential_depth")
     return half ? VK_FORMAT_R16G16_SFLOAT : VK_FORMAT_R32G32_SFLOAT;
   if (basis == "four_moments" && half) return VK_FORMAT_R16G16B16A16_UNORM;
   return half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -62,10 +67,12 @@ ParamSpec choice(const char* name, const Choices& choices, const char* help) {
 }
 
 ParamSpec basis_spec() {
-  return choice(map_trait::kBasis,
-                {"variance", "exponential", "exponential_variance", "exponential_variance_4", "four_moments",
-                 "fourier"},
-                "functions of depth that are averaged");
+  return choice(
+      map_trait::kBasis,
+      {"variance", "exponential", "exponential_variance", "exponential_variance_4", "four_moments", "fourier",
+       "exponential_depth", "fourier_depth"},
+      "functions of depth that are averaged; the last two also times depth, which tells how far what "
+      "hides the light is");
 }
 
 ParamSpec precision_spec() {
@@ -146,7 +153,11 @@ MomentLayout declare_basis(Declaration& d) {
   const ParamSpec series = terms_spec();
   const int64_t terms = d.integer(series.name, std::get<int64_t>(series.default_value), int64_t(series.min),
                                   int64_t(series.max), series.unit, series.help);
-  const uint32_t layers = basis == "fourier" ? uint32_t((terms + 1) / 2) : 1;
+  const auto pairs = uint32_t((terms + 1) / 2);
+  const uint32_t layers = basis == "fourier"             ? pairs
+                          : basis == "fourier_depth"     ? 2 * pairs
+                          : basis == "exponential_depth" ? 2
+                                                         : 1;
   return {format_of(basis, half), layers};
 }
 

@@ -6,8 +6,11 @@
 #include "engine/scene/scene.h"
 #include "passes/filtered/moment_basis.h"
 #include "passes/filtered/summed_area.h"
+#include "passes/frame/pixel_list.h"
 #include "passes/map/map_domain.h"
+#include "passes/map/map_traits.h"
 #include "passes/map/receiver_ports.h"
+#include "passes/soft/listed_pixels.h"
 #include "passes/technique.h"
 
 namespace gnomon {
@@ -31,6 +34,15 @@ class MomentTest : public Pass {
                                        "of the penumbra at the receiver, world units: 'moments' is then a "
                                        "summed_area_table, read over the light's shape of that width")
                           .has_value();
+    d.optional_input("pyramid", Access::sampled, true,
+                     "with 'width': min_max_pyramid of the shadow map; where all of the kernel is lit or in "
+                     "umbra it decides, without the light that moments leak");
+    read_pyramid(d, "pyramid");
+    d.number("narrowest", 1, 0.01, 16, "texels", "with 'width': least width of a kernel");
+    d.integer(
+        "parts", 1, 1, 8, "1",
+        "with 'width': a side of the parts that the kernel is cut in, each against the receiver's plane "
+        "at its middle, where surfaces are not parallel to the light (Yang et al. 2010)");
     if (moments.mips == 1 && !soft) d.reads_around("moments", 2);
     read_basis(d, "moments");
     read_table(d, "moments", soft);
@@ -42,6 +54,8 @@ class MomentTest : public Pass {
     d.choice("solver", "hamburger", {"hamburger", "hausdorff"},
              "four_moments: depth unbounded, or known to lie in its range");
     declare_thresholds(d);
+    if (soft)
+      declare_pixel_list(d, visibility.extent, "pixels whose kernel is neither all lit nor all in umbra");
     d.output("visibility", Access::storage_write, true, visibility, "0 in umbra, 1 lit; a layer a light");
     makes_shadows(d, "visibility", soft ? ShadowKind::soft : ShadowKind::filtered);
   }
@@ -52,12 +66,17 @@ class MomentTest : public Pass {
     if (moments.mips > 1) defines.emplace_back("MIP_MAPS", "1");
     for (auto& define : table_defines(moments, e.params())) defines.push_back(std::move(define));
     test_.prepare(e, "filtered/moment_test.glsl", defines);
+    soft_ = e.connected("width");
+    if (soft_) find_.prepare(e, "filtered/soft_find.glsl", {{"PLAIN_DECIDES", "1"}});
     report_bias(e);
     warn_about_kernel(e, e.shape("shadow_map").extent.width);
     warn_about_rise(e, e.shape("shadow_map").extent.width);
   }
 
-  void record(Context& c) override { test_.dispatch_all(c); }
+  void record(Context& c) override {
+    if (soft_) return dispatch_listed(c, find_, test_, c.shape("visibility"));
+    test_.dispatch_all(c);
+  }
 
  private:
   // The map that tells receivers' places and bias is the one that the moments are made of.
@@ -84,7 +103,8 @@ class MomentTest : public Pass {
     d.number("light_leak_reduction", 0, 0, 0.99, "1", "visibility that becomes 0; the rest is stretched");
   }
 
-  PerLight test_;
+  bool soft_ = false;
+  PerLight find_, test_;
 };
 
 GNOMON_PASS("moment_test", MomentTest);

@@ -15,7 +15,7 @@ std::pair<double, double> standard_range(const Declaration& d, const std::string
   const std::string basis = text_trait(d, source, map_trait::kBasis, "");
   if (basis == "variance") return {-0.5, 0.5};
   const bool half = text_trait(d, source, map_trait::kPrecision, "single") == "half";
-  if (basis == "fourier" || (basis == "four_moments" && !half)) return {-1, 1};
+  if (basis.starts_with("fourier") || (basis == "four_moments" && !half)) return {-1, 1};
   return {0, 1};
 }
 
@@ -35,16 +35,27 @@ ParamSpec kernel_spec(int64_t standard) {
           "texels",
           "integer: side of the largest square that is read; the smaller, the finer the steps"};
 }
+constexpr const char *kNumbers = "numbers", *kPair = "integer_pair";  // a trait, too
+ParamSpec numbers_spec(const std::string& standard) {
+  return {
+      kNumbers,
+      ParamType::choice,
+      standard,
+      0,
+      0,
+      {"integer", kPair, "float"},
+      {},
+      "integer: 32 bits that wrap, whose error depends on the kernel and not on the map; integer_pair: twice "
+      "as many, for values of many magnitudes; float: loses digits with every texel from the corner on"};
+}
 constexpr const char* kLeastHelp = "integer: values below become this one";
 constexpr const char* kGreatestHelp = "integer: values above become this one";
 
 }  // namespace
 
-bool declare_table(Declaration& d, const std::string& source) {
-  const bool integers =
-      d.choice("numbers", "integer", {"integer", "float"},
-               "integer: 32 bits that wrap, whose error depends on the kernel and not on the map; float: "
-               "loses digits with every texel from the corner on") == "integer";
+TableNumbers declare_table(Declaration& d, const std::string& source) {
+  const ParamSpec numbers = numbers_spec("integer");
+  const std::string chosen = d.choice(numbers.name, "integer", numbers.choices, numbers.help);
   const ParamSpec kernel = kernel_spec(kStandardKernel);
   d.integer(kernel.name, kStandardKernel, int64_t(kernel.min), kMostKernel, kernel.unit, kernel.help);
   const auto [low, high] = standard_range(d, source);
@@ -53,12 +64,13 @@ bool declare_table(Declaration& d, const std::string& source) {
   const double greatest = d.number(map_trait::kGreatest, high, -kMostValue, kMostValue, "1",
                                    std::string(kGreatestHelp) + "; the basis' own");
   if (greatest <= least) d.refuse(map_trait::kGreatest, "above 'least'");
-  return integers;
+  if (chosen == "float") return TableNumbers::floating;
+  return chosen == kPair ? TableNumbers::integer_pair : TableNumbers::integer;
 }
 
 void set_table(Declaration& d, const std::string& output) {
   const Params params = d.params();
-  for (const char* key : {map_trait::kLargestKernel, map_trait::kLeast, map_trait::kGreatest})
+  for (const char* key : {kNumbers, map_trait::kLargestKernel, map_trait::kLeast, map_trait::kGreatest})
     d.set_trait(output, key, params.values().find(key)->second);
 }
 
@@ -68,6 +80,7 @@ void read_table(Declaration& d, const std::string& input, bool wanted) {
     d.refuse_source(input, "is no summed-area table, which a width for each pixel needs");
   if (table && !wanted)
     d.refuse_source(input, "is a summed-area table, which cannot be read without a width for each pixel");
+  d.derived(input, numbers_spec(text_trait(d, input, kNumbers, "integer")));
   d.derived(input, kernel_spec(integer_trait(d, input, map_trait::kLargestKernel, kStandardKernel)));
   d.derived(input, number_spec(map_trait::kLeast, number_trait(d, input, map_trait::kLeast, 0), kLeastHelp));
   d.derived(input, number_spec(map_trait::kGreatest, number_trait(d, input, map_trait::kGreatest, 1),

@@ -10,14 +10,16 @@
 
 namespace gnomon {
 
+// Of a table. Integers are of 32 bits and wrap; of a pair the second holds what the first, cut off, leaves.
+enum class TableNumbers { integer, integer_pair, floating };
+
 // Of the pass that makes a table of `source`: parameters `numbers`, `largest_kernel`, `least`, `greatest`.
-// True when its numbers are integers.
-bool declare_table(Declaration& d, const std::string& source);
+TableNumbers declare_table(Declaration& d, const std::string& source);
 // ... and, once it is declared, what the output that has them says of itself.
 void set_table(Declaration& d, const std::string& output);
 
-// Of a reader: `largest_kernel`, `least`, `greatest` as derived values. `wanted`: anything but a table is
-// refused; otherwise a table is.
+// Of a reader: `numbers`, `largest_kernel`, `least`, `greatest` as derived values. `wanted`: anything but a
+// table is refused; otherwise a table is.
 void read_table(Declaration& d, const std::string& input, bool wanted);
 
 // Steps of an integer table between `least` and `greatest`: the sum over the largest kernel is below 2^32.

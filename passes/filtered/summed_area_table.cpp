@@ -1,4 +1,6 @@
 // The pass summed_area_table: sums of a map over all rectangles that begin at its corner.
+#include <string_view>
+
 #include "engine/base/divide_up.h"
 #include "engine/graph/pass.h"
 #include "engine/render/context.h"
@@ -15,8 +17,9 @@ struct Layout {
   VkFormat integers, floats;
 };
 
-// As many channels as the source has.
-Layout layout_of(VkFormat source) {
+// As many channels as the source has, of pairs twice as many.
+Layout layout_of(VkFormat source, bool pair) {
+  if (pair) return {"xyzw", VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32G32B32A32_SFLOAT};
   switch (source) {
     case VK_FORMAT_R16G16_SFLOAT:
     case VK_FORMAT_R32G32_SFLOAT:
@@ -40,8 +43,11 @@ class SummedAreaTable : public Pass {
     d.cite("Crow 1984; wrapping integers: Peters et al. 2017, section 5");
     const ImageShape source =
         d.input("source", Access::sampled, true, "what is summed, every layer and channel by itself");
-    const bool integers = declare_table(d, "source");
-    const Layout layout = layout_of(source.format);
+    const TableNumbers numbers = declare_table(d, "source");
+    const bool integers = numbers != TableNumbers::floating, pair = numbers == TableNumbers::integer_pair;
+    const Layout layout = layout_of(source.format, pair);
+    if (pair && std::string_view(layout_of(source.format, false).name) == layout.name)
+      d.refuse("numbers", "\"integer\" or \"float\" of a source with more than two channels");
     d.output("sums", Access::storage_read | Access::storage_write, true,
              {source.extent, source.layers, 1, integers ? layout.integers : layout.floats},
              "of all texels up to and including each one, in x and y");
@@ -50,7 +56,9 @@ class SummedAreaTable : public Pass {
   }
 
   void prepare(Environment& e) override {
-    const Defines defines{{"CHANNELS", layout_of(e.shape("source").format).name}};
+    const Defines defines{
+        {"CHANNELS",
+         layout_of(e.shape("source").format, e.params().choice("numbers") == "integer_pair").name}};
     columns_ = e.compute("filtered/summed_area_table.glsl", defines);
     rows_ = e.compute("filtered/summed_area_table.glsl", {defines.front(), {"ROWS", "1"}});
     scale_.integer = table_steps(e.params());

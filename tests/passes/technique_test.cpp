@@ -22,7 +22,11 @@ TEST(Technique, SaysWhatItsShadowsAre) {
                                                       {"shadow_volumes", ShadowKind::hard},
                                                       {"planar_shadows", ShadowKind::hard},
                                                       {"pcss", ShadowKind::soft},
-                                                      {"savsm", ShadowKind::soft}};
+                                                      {"savsm", ShadowKind::soft},
+                                                      {"vssm", ShadowKind::soft},
+                                                      {"mssm", ShadowKind::soft},
+                                                      {"essm", ShadowKind::soft},
+                                                      {"cssm", ShadowKind::soft}};
   for (const auto& [name, kind] : kinds) EXPECT_EQ(shadow_kind(load_graph(find_graph(name))), kind) << name;
 }
 

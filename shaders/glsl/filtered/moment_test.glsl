@@ -1,24 +1,15 @@
-// Visibility of every camera pixel from a pre-filtered shadow map.
+// Visibility of every camera pixel from a pre-filtered shadow map; with a width for each, of the listed ones.
 #include "map/shadow_query.glsl"
-#include "lib/moment_warp.glsl"
-#include "lib/variance_shadow.glsl"
-#include "lib/moment_shadow.glsl"
-#include "lib/convolution_shadow.glsl"
+#include "filtered/stored_moments.glsl"
 #ifdef HAS_WIDTH
 #include "map/light_kernel.glsl"
-#if TABLE_INTEGER == 1
-#define SUMMED uvec4
-#else
-#define SUMMED vec4
-#endif
-SUMMED summed_at(ivec2 texel, int layer) { return moments_at(texel, layer); }
-#include "lib/summed_area.glsl"
+#include "filtered/table_mean.glsl"
+#include "frame/pixel_list.glsl"
+#include "lib/moment_occluders.glsl"
 
 const float SQUARE_OF_DISC = 0.886226925;  // half a square's side, in radii of the disc of the same area
-vec2 kernel_half;                          // of the pixel at hand, texels
+vec2 kernel_half, kernel_middle;           // of the pixel's part at hand, texels
 #endif
-
-layout(local_size_x = 8, local_size_y = 8) in;
 
 #ifdef HAS_WIDTH
 // The rectangle in which the map sees the light through the penumbra's width; of a round light a square of the same area. A texel
@@ -27,17 +18,12 @@ void find_kernel(ivec2 pixel, Query query) {
   Light light = lights[push.light];
   vec2 half_width = half_kernel(query.view, half_size_of(light), size_of(light), width_at(pixel, int(push.light)).x, query.plane.z);
   if (is_round(light)) half_width *= SQUARE_OF_DISC;
-  kernel_half = clamp(half_width, vec2(0.5), vec2(0.5 * float(params.largest_kernel)));
+  kernel_half = clamp(half_width, vec2(0.5 * params.narrowest), vec2(0.5 * float(params.largest_kernel)));
+  kernel_middle = query.position;
 }
 float footprint_level(ivec2 pixel, Query query) { return 0.0; }
-// The mean over the kernel, from a table with the steps of passes/filtered/summed_area.h.
 vec4 filtered(Query query, int layer, float level) {
-  vec4 sum = summed_rectangle(query.position - kernel_half, query.position + kernel_half, textureSize(moments, 0).xy, layer);
-  vec4 mean = sum / (4.0 * kernel_half.x * kernel_half.y);
-#if TABLE_INTEGER == 1
-  mean = params.least + mean * ((params.greatest - params.least) / TABLE_STEPS);
-#endif
-  return mean;
+  return table_mean(kernel_middle - kernel_half, kernel_middle + kernel_half, layer);
 }
 #else
 // Bilinear, in full precision (hardware filters weigh in 1/256) and within the view.
@@ -104,9 +90,14 @@ float receiver_linear_depth(Query query, float level) {
 #else
   float half_width = 0.5 * (float(params.kernel) * exp2(level) - 1.0);
 #endif
-  float z = receiver_depth(view, plane, plane.texel, true);
   vec2 outwards = half_width * sign(plane.gradient);
-  float farthest = receiver_depth(view, plane, plane.texel + outwards, true);
+#ifdef HAS_WIDTH
+  vec2 middle = plane.texel + (kernel_middle - query.position);
+#else
+  vec2 middle = plane.texel;
+#endif
+  float z = receiver_depth(view, plane, middle, true);
+  float farthest = receiver_depth(view, plane, middle + outwards, true);
   return clamp(z - params.bias_kernel * max(farthest - z, 0.0), 0.0, 1.0);
 }
 
@@ -123,10 +114,10 @@ float warped_visibility(vec2 stored, float t, float exponent) {
 
 float reconstruct(Query query, float z, float level) {
   int layer = query.layer * MOMENT_LAYERS;
-#if BASIS == BASIS_FOURIER
+#if BASIS == BASIS_FOURIER || BASIS == BASIS_FOURIER_DEPTH
   vec2 even = csm_first(z), rotation = csm_rotation(z);
   float sum = 0.0;
-  for (int i = 0; i < MOMENT_LAYERS; ++i) {
+  for (int i = 0; i < SERIES_LAYERS; ++i) {
     vec4 b = filtered(query, layer + i, level);
     vec2 odd = csm_next(even, rotation);
     sum += csm_term(b.xy, even, 2 * i, params.terms, params.ringing);
@@ -151,27 +142,68 @@ float reconstruct(Query query, float z, float level) {
   // Both warps bound the same share: the smaller bound holds.
   return min(warped_visibility(b.xy, positive_warp(z, params.exponent), params.exponent),
              warped_visibility(b.zw, negative_warp(z, params.negative_exponent), params.negative_exponent));
+#elif BASIS == BASIS_EXPONENTIAL_DEPTH
+#ifdef HAS_WIDTH
+  // Over the mean of the plane's own exponential, which on slopes is more than that of its middle.
+  vec2 rise = params.exponent * linear_rise(query, kernel_half);
+  float plane = exp(params.exponent * (z - 1.0)) * mean_of_exponential(rise.x) * mean_of_exponential(rise.y);
 #else
-  vec4 m = PRECISION == PRECISION_HALF ? inverse_quantisation_transform(b) : b;
-  float bias = params.moment_bias * (PRECISION == PRECISION_HALF ? HALF_MOMENT_BIAS : SINGLE_MOMENT_BIAS);
-#if SOLVER == SOLVER_HAMBURGER
-  return 1.0 - hamburger_occlusion(bias_moments(m, HAMBURGER_CENTRE, bias), signed_depth(z));
-#else
-  return 1.0 - hausdorff_occlusion(bias_moments(m, HAUSDORFF_CENTRE, bias), signed_depth(z));
+  float plane = exp(params.exponent * (z - 1.0));
 #endif
+  return min(b.x / plane, 1.0);
+#elif SOLVER == SOLVER_HAMBURGER
+  return 1.0 - hamburger_occlusion(biased_moments(b, HAMBURGER_CENTRE), signed_depth(z));
+#else
+  return 1.0 - hausdorff_occlusion(biased_moments(b, HAUSDORFF_CENTRE), signed_depth(z));
 #endif
 #endif
 }
+
+float visibility_of(Query query, float level) {
+  return reduce_light_leak(reconstruct(query, receiver_linear_depth(query, level), level), params.light_leak_reduction);
+}
+
+#ifdef HAS_WIDTH
+layout(local_size_x = 64) in;
+
+// The mean over parts of the kernel, each against the receiver's plane at its middle.
+float mean_of_parts(Query query) {
+  kernel_half /= float(params.parts);
+  vec2 first = query.position - float(params.parts - 1) * kernel_half;
+  float sum = 0.0;
+  int y = 0;
+  do {
+    int x = 0;
+    do {
+      kernel_middle = first + 2.0 * vec2(x, y) * kernel_half;
+      sum += visibility_of(query, 0.0);
+    } while (++x < params.parts);
+  } while (++y < params.parts);
+  return sum / float(params.parts * params.parts);
+}
+
+void main() {
+  ivec2 at;
+  if (!listed_pixel(list_slot(), imageSize(visibility).x, at)) return;
+  Query query;
+  make_query(at, query);
+  find_kernel(at, query);
+  Light light = lights[push.light];
+  float most_lit = share_above(horizon_at(at, query.view, half_size_of(light)), is_round(light));
+  imageStore(visibility, ivec3(at, push.light), vec4(most_lit * mean_of_parts(query)));
+}
+
+#else
+
+layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(at, imageSize(visibility).xy))) return;
   Query query;
   int state = make_query(at, query);
-#ifdef HAS_WIDTH
-  find_kernel(at, query);
-#endif
-  float level = footprint_level(at, query);
-  float v = reduce_light_leak(reconstruct(query, receiver_linear_depth(query, level), level), params.light_leak_reduction);
+  float v = visibility_of(query, footprint_level(at, query));
   imageStore(visibility, ivec3(at, push.light), vec4(state == PIXEL_INSIDE ? v : unmapped_visibility(state)));
 }
+
+#endif

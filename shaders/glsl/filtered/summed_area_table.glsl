@@ -11,7 +11,15 @@ layout(push_constant) uniform Push {
 const int LINES = 8, PARTS = 8;
 layout(local_size_x = LINES, local_size_y = PARTS) in;
 
-#if NUMBERS == NUMBERS_INTEGER
+#if NUMBERS == NUMBERS_INTEGER_PAIR
+#define SUM uvec4
+// Whole steps of two values, and what is left of them in as many steps.
+SUM stored(vec4 value) {
+  precise vec2 steps = clamp((value.xy - params.least) * push.factor, vec2(0.0), vec2(push.most));
+  uvec2 whole = uvec2(steps);
+  return uvec4(whole, uvec2((steps - vec2(whole)) * float(push.most)));
+}
+#elif NUMBERS == NUMBERS_INTEGER
 #define SUM uvec4
 SUM stored(vec4 value) {
   precise vec4 steps = (value - params.least) * push.factor;

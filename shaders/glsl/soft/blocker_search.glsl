@@ -16,7 +16,8 @@ const int UMBRA_TAPS = 3;  // where all of the region blocks: any mean of it wil
 // x: sum of the blockers' depths among so many taps a side, evenly spread over the region; y: their number. When the region has
 // no more texels a side than taps, each is one tap.
 vec2 blockers_in(Query query, Region region) {
-  ivec2 texels = region.high - region.low + 1, taps = min(texels, ivec2(region.all_block ? UMBRA_TAPS : params.taps)), last = textureSize(shadow_map, 0).xy - 1;
+  ivec2 texels = region.high - region.low + 1, last = textureSize(shadow_map, 0).xy - 1;
+  ivec2 taps = min(texels, ivec2(region.all_block ? UMBRA_TAPS : params.taps));
   vec2 sum = vec2(0.0);
   int y = 0;
   do {

@@ -89,6 +89,28 @@ TEST(SummedAreaTableRange, MapsItsEndsToNothingAndToAllSteps) {
   EXPECT_EQ(words[0][1], 0xFFFFFFFFu / 256u);
 }
 
+// Values of many magnitudes: the second of two integers has what the first, of whole steps, leaves.
+TEST(SummedAreaTablePairs, KeepWhatIsLessThanAStep) {
+  const Case c{4, 1, 1, 2, 128};
+  test::given_texels() = {1e-9f, 1.0f, 3e-7f, 0.25f, 0.75f, 1e-8f, 1e-5f, 0.0f};
+  const std::vector<Pick> picks{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {0, 0, 3}};
+  const auto words = test::picked(
+      {c.width, c.height}, c.layers, c.channels,
+      R"(, { "id": "table", "type": "summed_area_table", "in": { "source": "texels.texels" }, "params": { "numbers": "integer_pair" } })",
+      "table.sums", picks);
+  const double steps = 0xFFFFFFFFu / (128u * 128u);
+  for (size_t channel = 0; channel < 2; ++channel) {
+    double sum = 0;
+    for (uint32_t x = 0; x < c.width; ++x) {
+      const double value = test::given_texels()[2 * x + channel];
+      sum += value;
+      const double is = (words[channel][x] + words[channel + 2][x] / steps) / steps;
+      // A step of the second integer for each texel, and a float's rounding of the largest.
+      EXPECT_NEAR(is, sum, (x + 1) / (steps * steps) + 1e-7 * sum) << x;
+    }
+  }
+}
+
 TEST_P(SummedAreaTable, FloatsAreTheSumsUpToRounding) {
   const Case c = GetParam();
   give_random(c, 0, 1);
