@@ -172,15 +172,20 @@ MeasuredError measure_visibility(const Image& visibility, const Reference& refer
   return error;
 }
 
-Image shade_reference(const Scene& scene, const Camera& camera, const Reference& reference) {
+Image shade_reference(const Scene& scene, const Camera& camera, const Reference& reference,
+                      const Ambient& ambient) {
   if (scene.lights.size() != reference.lights)
     fail(fmt::format("the reference has {} lights, the scene {}", reference.lights, scene.lights.size()),
          scene.file.string());
   Image image(reference.width, reference.height, {"R", "G", "B"});
   const glm::dvec3 eye(camera.world_from_camera[3]);
+  const glm::dvec3 sky = sky_radiance(scene, ambient);
   for (size_t i = 0; i < reference.depth.size(); ++i) {
-    if (std::isinf(reference.depth[i])) continue;
-    glm::dvec3 sum(0);
+    if (std::isinf(reference.depth[i])) {
+      for (int c = 0; c < 3; ++c) image.plane(c)[i] = static_cast<float>(sky[c]);
+      continue;
+    }
+    glm::dvec3 sum = hemisphere_irradiance(double{reference.shading_normal[i].y}, ambient.ground) * sky;
     for (uint32_t k = 0; k < reference.lights; ++k)
       if (const double visibility = reference.visibility[k][i]; visibility > 0)
         sum += visibility * scene.lights[k].color *

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/image/image.h"
+#include "engine/light/ambient.h"
 #include "engine/scene/scene.h"
 #include "engine/truth/metrics.h"
 #include "engine/truth/reference.h"
@@ -68,7 +69,8 @@ double measure_acne(std::span<const float> result, const Reference& reference, u
 // The image that perfect visibility gives: albedo / pi x sum over lights of irradiance x visibility, linear
 // RGB without ambient, black where there is no geometry. Lambert with the interpolated normal; spot falloff
 // and range as in KHR_lights_punctual. `camera`: that the reference was traced with.
-Image shade_reference(const Scene& scene, const Camera& camera, const Reference& reference);
+Image shade_reference(const Scene& scene, const Camera& camera, const Reference& reference,
+                      const Ambient& ambient = {});
 
 // `all`, and each light of `lights`. Metrics that do not apply are left out; NaN becomes null.
 nlohmann::json to_json(const MeasuredError& error);

@@ -7,6 +7,7 @@
 #include "bench/error/error_interval.h"
 #include "bench/error/measure.h"
 #include "engine/base/error.h"
+#include "engine/graph/graph.h"
 #include "engine/truth/metrics.h"
 #include "passes/technique.h"
 
@@ -42,13 +43,32 @@ const std::vector<std::vector<uint32_t>>& Truth::deep_umbra_of(const EdgeSetting
   return found->second;
 }
 
+Ambient ambient_of(const Graph& graph) {
+  Ambient ambient;
+  const auto color = graph.outputs.find("color");
+  if (color == graph.outputs.end()) return ambient;
+  const auto node = std::find_if(graph.nodes.begin(), graph.nodes.end(),
+                                 [&](const GraphNode& n) { return n.id == color->second.node; });
+  if (node == graph.nodes.end()) return ambient;
+  const auto take = [&](const char* name, double& value) {
+    const auto found = node->params.find(name);
+    if (found == node->params.end()) return;
+    if (const auto* number = std::get_if<double>(&found->second)) value = *number;
+    if (const auto* whole = std::get_if<std::int64_t>(&found->second)) value = static_cast<double>(*whole);
+  };
+  take("ambient", ambient.share), take("ground", ambient.ground);
+  take("sky_red", ambient.sky.r), take("sky_green", ambient.sky.g), take("sky_blue", ambient.sky.b);
+  return ambient;
+}
+
 MeasuredError Truth::error(const Image& visibility, const Image* color, const Graph& graph) const {
   const EdgeSettings edges{&tracer_, camera_, map_side(graph).value_or(kUsualMapSide)};
   // FLIP takes about as long as all the rest together, and shares nothing with it.
   std::future<double> flipped;
   if (color != nullptr)
-    flipped =
-        std::async(std::launch::async, [color, &truth = shaded()] { return flip(rgb_of(*color), truth); });
+    flipped = std::async(std::launch::async, [color, &truth = shaded(ambient_of(graph))] {
+      return flip(rgb_of(*color), truth);
+    });
   MeasuredError error = measure_visibility(visibility, reference_, edges, deep_umbra_of(edges));
   if (color != nullptr) error.all.flip = flipped.get();
   std::vector<ComparedPlane> planes;
@@ -60,8 +80,9 @@ MeasuredError Truth::error(const Image& visibility, const Image* color, const Gr
   return error;
 }
 
-const Image& Truth::shaded() const {
-  if (shaded_.width == 0) shaded_ = shade_reference(*scene_, camera_, reference_);
+const Image& Truth::shaded(const Ambient& ambient) const {
+  if (shaded_.width == 0 || shaded_with_ != ambient)
+    shaded_ = shade_reference(*scene_, camera_, reference_, ambient), shaded_with_ = ambient;
   return shaded_;
 }
 

@@ -20,6 +20,9 @@ Image rgb_of(const Image& color);
 
 struct Graph;  // engine/graph/graph.h
 
+// Of the pass that a graph's colour comes from; without any where it has none of these parameters.
+Ambient ambient_of(const Graph& graph);
+
 class Truth {
  public:
   // Traces, or reads from `cache`.
@@ -30,7 +33,7 @@ class Truth {
   // judged by (map_side; 1024 when there is none).
   MeasuredError error(const Image& visibility, const Image* color, const Graph& graph) const;
   const Reference& reference() const { return reference_; }
-  const Image& shaded() const;  // shade_reference() of it
+  const Image& shaded(const Ambient& ambient = {}) const;  // shade_reference() of it; until asked for another
 
  private:
   std::shared_ptr<const Scene> scene_;
@@ -39,6 +42,7 @@ class Truth {
   ReferenceTracer tracer_;
   const std::vector<std::vector<uint32_t>>& deep_umbra_of(const EdgeSettings& edges) const;
   mutable Image shaded_;  // made when first asked for
+  mutable Ambient shaded_with_;
   mutable std::map<uint32_t, std::vector<std::vector<uint32_t>>>
       deep_umbra_;  // by the map's size; a list a light
 };

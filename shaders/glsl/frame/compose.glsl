@@ -7,6 +7,10 @@
 layout(location = PIXEL_RAYS) flat in vec4 flat_lights[4 * FLAT_LIGHTS];
 layout(location = 0) out vec4 out_color;
 
+#if SKY
+layout(push_constant) uniform Push { vec4 sky; } push;  // radiance
+#endif
+
 const float PI = 3.14159265358979;
 
 // What shading asks of it.
@@ -44,5 +48,8 @@ void main() {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < FLAT_LIGHTS; ++i) sum += seen(at, i) * irradiance(flat_light(i), p, n);
   for (int i = FLAT_LIGHTS; i < LIGHT_COUNT; ++i) sum += seen(at, i) * irradiance(lights[i], p, n);
+#if SKY
+  sum += PI * mix(params.ground, 1.0, 0.5 + 0.5 * n.y) * push.sky.rgb;  // hemisphere_irradiance() of engine/light/ambient.h
+#endif
   out_color = vec4(albedo_at(at).rgb / PI * sum, 1.0);
 }
