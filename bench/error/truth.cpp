@@ -66,9 +66,8 @@ MeasuredError Truth::error(const Image& visibility, const Image* color, const Gr
   // FLIP takes about as long as all the rest together, and shares nothing with it.
   std::future<double> flipped;
   if (color != nullptr)
-    flipped = std::async(std::launch::async, [color, &truth = shaded(ambient_of(graph))] {
-      return flip(rgb_of(*color), truth);
-    });
+    flipped = std::async(std::launch::async,
+                         [color, &truth = shaded(ambient_of(graph))] { return flip(rgb_of(*color), truth); });
   MeasuredError error = measure_visibility(visibility, reference_, edges, deep_umbra_of(edges));
   if (color != nullptr) error.all.flip = flipped.get();
   std::vector<ComparedPlane> planes;

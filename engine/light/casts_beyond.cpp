@@ -73,8 +73,8 @@ bool edge_between(const Outline& a, const Outline& b) {
   return false;
 }
 
-struct Far {                          // a triangle beyond the reach
-  std::array<glm::dvec3, 3> corners;  // in the light's frame
+struct Far {                            // a triangle beyond the reach
+  std::array<glm::dvec3, 3> corners{};  // in the light's frame
   Outline outline;
   Polygon seen;  // the part of it that the camera sees, in the light's frame; empty: none
 };

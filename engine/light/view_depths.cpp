@@ -20,7 +20,7 @@ size_t shell_of(double distance) {
 
 struct Depths {
   Shells shells;
-  double reach;
+  double reach = std::numeric_limits<double>::infinity();
   void add(double d) {
     if (d <= reach) shells.add(d, glm::dvec3(d));
   }

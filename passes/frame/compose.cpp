@@ -24,9 +24,10 @@ class Compose : public Pass {
     d.input("normal", Access::sampled, false, "octahedral shading normal");
     d.input("albedo", Access::sampled, false, "base colour");
     const Ambient standard;
-    d.number("ambient", standard.share, 0, 10, "1",
-             "irradiance from the sky, as a share of what all lights bring to the scene's middle; 0: none, and "
-             "the background is black");
+    d.number(
+        "ambient", standard.share, 0, 10, "1",
+        "irradiance from the sky, as a share of what all lights bring to the scene's middle; 0: none, and "
+        "the background is black");
     d.number("ground", standard.ground, 0, 1, "1", "radiance of the ground, as a share of the sky's");
     d.number("sky_red", standard.sky.r, 0, 1, "1", "colour of the sky, linear, as the two below");
     d.number("sky_green", standard.sky.g, 0, 1, "1", "see sky_red");

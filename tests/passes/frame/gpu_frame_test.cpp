@@ -7,6 +7,8 @@
 #include <string>
 
 #include "bench/error/measure.h"
+#include "bench/error/truth.h"
+#include "engine/light/ambient.h"
 #include "tests/engine/truth/analytic_scenes.h"
 #include "tests/passes/hard/hard_shadow_run.h"
 
@@ -103,6 +105,36 @@ TEST(Compose, EveryLightShines) {
     EXPECT_GT(background, 100);
     EXPECT_LT(background, 2000);
   }
+}
+
+// A square under a sky, and another one that hides it from the light.
+TEST(Compose, TheSkyShinesWhereNoLightDoes) {
+  Scene scene = square_over_plane(light(LightType::spot, {1.5, 7, 1}));
+  scene.lights[0].intensity = 30;
+  const RenderSettings s = hard_shadow::settings(true, 64, 48);
+  const Graph graph = load_graph(find_graph("shadow_volumes"), {{"ambient", 0.25}});
+  Renderer renderer(hard_shadow::device(), std::make_shared<Scene>(scene), graph, s);
+  renderer.render(TimingMode::none);
+  const Image shown = renderer.read("color"), visibility = renderer.read("visibility");
+  EXPECT_EQ(visibility.data, hard_shadow::visibility("shadow_volumes", scene, s)[0]);
+  const Ambient ambient = ambient_of(graph);
+  EXPECT_EQ(ambient.share, 0.25);
+  const glm::dvec3 sky = sky_radiance(scene, ambient);
+  const Reference reference = hard_shadow::trace(scene, s);
+  const Image expected = shade_reference(scene, scene.cameras[0], reference, ambient);
+  int dark = 0;
+  for (size_t i = 0; i < reference.depth.size(); ++i)
+    for (size_t c = 0; c < 3; ++c) {
+      const double value = shown.plane(c)[i];
+      if (visibility.plane(0)[i] != reference.visibility[0][i]) continue;
+      EXPECT_NEAR(value, expected.plane(c)[i], 0.01 * value + 1e-4) << i << ' ' << c;
+      EXPECT_GT(value, 0);
+      if (visibility.plane(0)[i] != 0) continue;
+      ++dark;  // white, and upright below the sky: its radiance
+      EXPECT_NEAR(value, sky[int(c)], 0.01 * value);
+    }
+  EXPECT_GT(dark, 100);
+  EXPECT_EQ(ambient_of(load_graph(find_graph("shadow_volumes"))), Ambient{});
 }
 
 }  // namespace
