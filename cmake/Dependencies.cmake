@@ -12,5 +12,7 @@ find_package(glslang REQUIRED)
 find_package(Vulkan REQUIRED)
 find_package(meshoptimizer REQUIRED)
 find_package(draco REQUIRED)
+# Debian's libdraco exports a tinygltf of another version: that of libtinygltf must be found first, whatever else is linked.
+set_property(TARGET TinyGLTF::TinyGLTF APPEND PROPERTY INTERFACE_LINK_LIBRARIES draco::draco)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)

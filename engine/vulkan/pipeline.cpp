@@ -41,7 +41,7 @@ struct Owned {
 Pipeline own(const std::shared_ptr<Device>& device, PipelineStore::Held pipeline, VkPipelineLayout layout,
              VkPipelineBindPoint point) {
   const VkPipeline handle = *pipeline;
-  return {std::make_shared<Owned>(device, std::move(pipeline)), handle, layout, point};
+  return {std::make_shared<Owned>(Owned{device, std::move(pipeline)}), handle, layout, point};
 }
 
 // All that a pipeline is made of, as bytes.
