@@ -228,8 +228,8 @@ void add_device_options(CLI::App& command, DeviceFlags& flags) {
       ->type_name("PART");
   command
       .add_option("--memory", flags.memory,
-                  "limit of what a technique's shadow maps take at a time, as 512MB or 2GB; further maps "
-                  "wait their turn")
+                  "limit of what a technique's images and buffers take, as 512MB or 2GB: further maps of "
+                  "area lights wait their turn, and what needs more is refused")
       ->transform(CLI::AsSizeValue(false))
       ->check(CLI::Range(uint64_t{1} << 20, uint64_t{1} << 40))
       ->default_str("1GB");

@@ -107,7 +107,10 @@ void add_edt(CLI::App& app, int& status) {
 
 Example:
   gnomon edt mask.png distance.exr --algorithm jump_flooding --variant jfa_squared --json figures.json)");
-  command->callback([options, &status] { status = edt_command(*options); });
+  command->callback([options, &status] {
+    options->settings.memory = options->device.memory;
+    status = edt_command(*options);
+  });
 }
 
 }  // namespace gnomon

@@ -35,6 +35,7 @@ Plan plan_of(const Scene& scene, const Graph& graph, const Options& options) {
   Declaration::Setting setting;
   setting.viewport = size;
   setting.lights = static_cast<uint32_t>(scene.lights.size());
+  setting.memory = options.device.memory;
   for (const Light& light : scene.lights) setting.light_types.push_back(view_type(light));
   setting.scene = scene_sizes(scene);
   return compile(graph, setting, scene_facts(scene, camera, double(size.width) / size.height, size.height));
@@ -71,6 +72,7 @@ Measured measure(const std::shared_ptr<const Scene>& scene, const Graph& graph, 
   settings.width = size.width;
   settings.height = size.height;
   settings.camera = options.camera;
+  settings.memory = options.device.memory;
   auto lean = std::make_unique<Renderer>(device, scene, graph, settings);
   settings.keep_all = true;
   Renderer full(device, scene, graph, settings);

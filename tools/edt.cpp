@@ -51,6 +51,7 @@ EdtRun run_edt(const std::shared_ptr<Device>& device, const std::shared_ptr<cons
                const EdtSettings& settings) {
   RenderSettings render;
   render.width = mask->width, render.height = mask->height;
+  render.memory = settings.memory;
   render.images["mask"] = mask;
   Renderer renderer(device, nullptr, edt_graph(settings), render);
   EdtRun run;

@@ -16,8 +16,9 @@ namespace gnomon {
 struct EdtSettings {
   std::string algorithm = "banded_exact", variant = "jfa";  // of the pass type distance_transform
   std::string sites = "nonzero";
-  uint32_t radius = 32;             // pixels; of bounded_exact
-  uint32_t warmup = 2, repeat = 1;  // runs; only the latter are measured
+  uint32_t radius = 32;                 // pixels; of bounded_exact
+  uint32_t warmup = 2, repeat = 1;      // runs; only the latter are measured
+  uint64_t memory = uint64_t{1} << 30;  // bytes: RenderSettings::memory
 };
 
 constexpr uint32_t kNoSite = 0xFFFFFFFF;  // shaders/glsl/lib/distance_transform.glsl

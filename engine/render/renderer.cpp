@@ -10,6 +10,7 @@
 #include "engine/base/interrupt.h"
 #include "engine/light/scene_facts.h"
 #include "engine/plan/compile.h"
+#include "engine/plan/memory_limit.h"
 #include "engine/render/context.h"
 #include "engine/render/device_plan.h"
 #include "engine/render/environment.h"
@@ -126,8 +127,9 @@ Renderer::Impl::Impl(std::shared_ptr<Device> d, std::shared_ptr<const Scene> s, 
     warnings.push_back(warning);
   const SceneFacts facts_of_view =
       scene->meshes.empty() ? facts_of_nothing() : scene_facts(*scene, camera, aspect, settings.height);
-  plan =
-      compile(graph, setting, settings.keep_all ? promising_nothing(facts_of_view) : facts_of_view, options);
+  const SceneFacts allowed = settings.keep_all ? promising_nothing(facts_of_view) : facts_of_view;
+  plan = compile(graph, setting, allowed, options);
+  check_memory(plan, graph, setting, allowed, options);
   gpu_scene.update(view(), 0, 0);
 
   VkPipelineCacheCreateInfo cache_info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};

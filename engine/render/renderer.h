@@ -81,7 +81,7 @@ class Renderer {
   std::vector<LeftOutPass> left_out() const;    // passes, then parts of those that run
   std::vector<std::string> warnings() const;    // passes' own ("open mesh 'leaves' in shadow_volumes")
   std::map<std::string, double> facts() const;  // passes' own figures: "shade.bias_world", ...
-  const Plan& plan() const;  // as compiled for the scene
+  const Plan& plan() const;                     // as compiled for the scene
   // Names of passes in execution order.
   std::vector<std::string> passes() const;
 

@@ -28,6 +28,7 @@ namespace gnomon::test {
 //   t_bypass      source -> result; need(): bypass unless the scene has triangles
 //   t_layers      -> result with one layer per light
 //   t_huge        -> result of a given size
+//   t_batches     -> result, with a transient of 64 x 64 texels and up to 16 layers that the memory holds
 //   t_target      -> target, guide (both R32_SFLOAT storage)
 //   t_says        -> result that says its `tone`, and `parts` = 3
 //   t_carries     source -> result that says what the source says, and `filtered`

@@ -1,4 +1,6 @@
 // Passes that only declare, for tests of the compiler.
+#include <algorithm>
+
 #include "engine/light/scene_facts.h"
 #include "tests/engine/plan/fake_passes.h"
 
@@ -159,6 +161,15 @@ struct Huge : Fake {
   }
 };
 
+struct Batches : Fake {
+  void declare(Declaration& d) const override {
+    constexpr uint64_t layer = 64 * 64 * 4;
+    const auto layers = uint32_t(std::clamp<uint64_t>(d.setting().memory / layer, 1, 16));
+    d.transient("maps", changed, true, {{64, 64}, layers, 1, value_format}, "as many as fit");
+    result(d, full_screen(d));
+  }
+};
+
 struct Target : Fake {
   void declare(Declaration& d) const override {
     d.output("target", written, false, full_screen(d), "to be changed in place");
@@ -230,6 +241,7 @@ void register_fake_passes() {
   registry.add("t_bypass", make<BypassPass>);
   registry.add("t_layers", make<Layers>);
   registry.add("t_huge", make<Huge>);
+  registry.add("t_batches", make<Batches>);
   registry.add("t_target", make<Target>);
   registry.add("t_says", make<Says>);
   registry.add("t_carries", make<Carries>);

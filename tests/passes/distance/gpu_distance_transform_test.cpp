@@ -324,10 +324,13 @@ TEST_F(DistanceTransform, ReachWithoutDepthIsAnError) {
 // 8192 x 8192 takes minutes: GNOMON_SLOW_TESTS=1.
 TEST_F(DistanceTransform, LargeImagesAreExact) {
   if (std::getenv("GNOMON_SLOW_TESTS") == nullptr) GTEST_SKIP() << "set GNOMON_SLOW_TESTS";
+  constexpr uint64_t memory = uint64_t{4} << 30;  // bytes
   for (const double density : {0.3, 1e-3, 1e-7}) {
     const Image mask = distance_oracle::random_mask(8192, 8192, density, 2);
-    EXPECT_EQ(count_wrong(mask, transform(mask, {.algorithm = "banded_exact"})), 0u) << density;
-    EXPECT_EQ(count_wrong(mask, transform(mask, {.algorithm = "bounded_exact"}), 32), 0u) << density;
+    EXPECT_EQ(count_wrong(mask, transform(mask, {.algorithm = "banded_exact", .memory = memory})), 0u)
+        << density;
+    EXPECT_EQ(count_wrong(mask, transform(mask, {.algorithm = "bounded_exact", .memory = memory}), 32), 0u)
+        << density;
   }
 }
 
