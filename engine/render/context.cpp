@@ -139,18 +139,38 @@ void Context::generate_mips(const std::string& port) {
 
 void Context::own_barrier() { full_barrier(commands_); }
 
-void Context::render(const Targets& targets, const std::function<void()>& body) {
-  std::vector<VkRenderingAttachmentInfo> colors;
-  Extent area;
+uint32_t Context::layers_of(const Targets& targets) const {
   uint32_t layers = 1;
-  const auto note = [&](const GpuImage& image) {
-    area = image.shape().extent;
-    layers = targets.layer ? targets.layers : image.shape().layers;
+  const auto note = [&](const std::string& port) {
+    layers = targets.layer ? targets.layers : physical(port).image.shape().layers;
   };
   for (const ColorTarget& target : targets.colors) {
-    const GpuImage& image = physical(target.port).image;
-    note(image);
+    note(target.port);
     if (target.layer) layers = 1;
+  }
+  if (targets.depth) note(targets.depth->port);
+  return layers;
+}
+
+void Context::render(const Targets& targets, const std::function<void()>& body) {
+  const uint32_t layers = layers_of(targets);
+  if (layers == 1 || state_.layers_at_once) return render_layers(targets, layers, body);
+  Targets one = targets;
+  one.layers = 1;
+  for (uint32_t i = 0; i < layers; ++i) {
+    one.layer = targets.layer.value_or(0) + i;
+    layer_ = i;
+    render_layers(one, 1, body);
+  }
+  layer_.reset();
+}
+
+void Context::render_layers(const Targets& targets, uint32_t layers, const std::function<void()>& body) {
+  std::vector<VkRenderingAttachmentInfo> colors;
+  Extent area;
+  for (const ColorTarget& target : targets.colors) {
+    const GpuImage& image = physical(target.port).image;
+    area = image.shape().extent;
     auto info = attachment(target_view(image, targets, target.layer),
                            layout_of(node_, target.port, image.shape().format), target.clear.has_value());
     if (target.clear) std::copy(target.clear->begin(), target.clear->end(), info.clearValue.color.float32);
@@ -160,7 +180,7 @@ void Context::render(const Targets& targets, const std::function<void()>& body) 
   bool stencil = false;
   if (targets.depth) {
     const GpuImage& image = physical(targets.depth->port).image;
-    note(image);
+    area = image.shape().extent;
     stencil = image.aspect() & VK_IMAGE_ASPECT_STENCIL_BIT;
     depth =
         attachment(target_view(image, targets), layout_of(node_, targets.depth->port, image.shape().format),
@@ -201,7 +221,12 @@ void Context::bind_geometry() {
   vkCmdBindIndexBuffer(commands_, scene_.indices(), 0, VK_INDEX_TYPE_UINT32);
 }
 
-void Context::draw(const Draw& draw, const LayerRun& layers) {
+void Context::draw(const Draw& draw, const LayerRun& all) {
+  LayerRun layers = all;
+  if (layer_) {
+    if (*layer_ < all.first || *layer_ - all.first >= all.count) return;
+    layers = {*layer_, 1};
+  }
   const uint32_t indices[] = {draw.instance, draw.material};
   vkCmdPushConstants(commands_, state_.pipeline_layout.get(), VK_SHADER_STAGE_ALL, 0, sizeof(indices),
                      indices);

@@ -71,7 +71,7 @@ class Context {
     if (section_) section_(name);
   }
 
-  // Raster. `body` records draws.
+  // Raster. `body` records draws: once, or, where vertex shaders cannot choose their layer, once for each.
   void render(const Targets& targets, const std::function<void()>& body);
   // Every instance of the scene `layers` times, gl_InstanceIndex counted from 0; or each one as often as it
   // has layers, gl_InstanceIndex the layer's.
@@ -95,6 +95,8 @@ class Context {
 
  private:
   const Physical& physical(const std::string& port) const;
+  uint32_t layers_of(const Targets& targets) const;
+  void render_layers(const Targets& targets, uint32_t layers, const std::function<void()>& body);
   void push_bytes(const Pipeline& pipeline, std::span<const std::byte> bytes, uint32_t offset);
   void draw_scene(const ScenePipelines& pipelines, Cull cull,
                   const std::function<std::span<const LayerRun>(const Draw&)>& layers_of);
@@ -106,6 +108,7 @@ class Context {
   const std::vector<Physical>&resources_, &previous_;
   uint32_t iteration_;
   std::function<void(std::string_view)> section_;
+  std::optional<uint32_t> layer_;  // the only one that draws go to
 };
 
 }  // namespace gnomon

@@ -21,6 +21,18 @@ void check_range(const Device& device, const Resource& r) {
          fmt::format("this device's storage buffers have at most {} bytes: use a smaller scene", most));
 }
 
+// Not every device can render to signed normalised numbers; what reads them samples floats as well.
+ImageShape on_device(const Device& device, const Resource& r) {
+  ImageShape shape = r.image;
+  if (shape.format != VK_FORMAT_R16G16_SNORM || (r.image_usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) == 0)
+    return shape;
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(device.physical(), shape.format, &properties);
+  if ((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT) == 0)
+    shape.format = VK_FORMAT_R32G32_SFLOAT;  // which every device can
+  return shape;
+}
+
 Physical make_physical(const std::shared_ptr<Device>& device, const Resource& r, bool own_memory) {
   check_range(*device, r);
   Physical physical;
@@ -33,7 +45,7 @@ Physical make_physical(const std::shared_ptr<Device>& device, const Resource& r,
     physical.views = std::make_shared<ViewSet>();
   } else {
     const VkImageUsageFlags fill = r.constant || r.history ? VK_IMAGE_USAGE_TRANSFER_DST_BIT : 0;
-    physical.image = GpuImage(device, r.image, r.image_usage | fill, own_memory);
+    physical.image = GpuImage(device, on_device(*device, r), r.image_usage | fill, own_memory);
   }
   return physical;
 }
@@ -78,6 +90,14 @@ std::vector<VkImageView> views_of(const Port& port, const GpuImage& image) {
   return views;
 }
 
+// What shaders do otherwise on this device.
+std::string missing_text(const Device& device) {
+  std::string text;
+  if (!device.chooses_layers()) text += "#define LAYERS_ONE_BY_ONE 1\n";
+  if (!device.numbers_triangles()) text += "#define NO_PRIMITIVE_NUMBER 1\n";
+  return text;
+}
+
 // Of one node's storage images, and what the device shows to a shader at most.
 void check_storage_images(const Device& device, const PlanNode& node) {
   uint32_t count = 0;
@@ -114,7 +134,7 @@ MemoryNeed device_need(const std::shared_ptr<Device>& device, const Resource& r)
       r.is_buffer ? Buffer(device, std::max<uint64_t>(r.buffer.count * r.buffer.stride, 16), r.buffer_usage,
                            Place::device, false)
                         .requirements()
-                  : GpuImage(device, r.image, r.image_usage, false).requirements();
+                  : GpuImage(device, on_device(*device, r), r.image_usage, false).requirements();
   return {need.size, std::max(need.alignment, granularity)};
 }
 
@@ -187,8 +207,9 @@ void DevicePlan::make_node(uint32_t index) {
   const PlanNode& node = plan_.nodes[index];
   NodeState& state = nodes_[index];
   check_storage_images(*device_, node);
-  state.preamble = light_kind_text(scene_.scene().lights) + camera_kind_text(scene_.camera()) +
-                   preamble(node.declaration, node.constant_inputs);
+  state.preamble = missing_text(*device_) + light_kind_text(scene_.scene().lights) +
+                   camera_kind_text(scene_.camera()) + preamble(node.declaration, node.constant_inputs);
+  state.layers_at_once = device_->chooses_layers();
   const auto shown = shader_ports(node.declaration);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const ShaderPort& s : shown)

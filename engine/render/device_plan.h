@@ -35,6 +35,7 @@ struct NodeState {
   VkDescriptorSet other_set = VK_NULL_HANDLE;  // with the copies of history exchanged; swapped every frame
   Buffer parameters;
   std::string preamble;
+  bool layers_at_once = true;  // Device::chooses_layers()
 };
 
 // Memory that a resource takes on this device (CompileOptions::memory).

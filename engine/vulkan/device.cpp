@@ -113,7 +113,7 @@ Device::Device(const DeviceOptions& options) {
   try {
     make_instance(options.validation);
     choose_physical(options.name_part);
-    make_device();
+    make_device(options.thrifty);
   } catch (...) {
     destroy();
     throw;
@@ -205,7 +205,7 @@ void Device::choose_physical(const std::string& name_part) {
 }
 
 // All that is missing at once.
-void Device::check_features() {
+void Device::check_features(bool thrifty) {
   VkPhysicalDeviceVulkan13Features f13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
   VkPhysicalDeviceVulkan12Features f12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &f13};
   VkPhysicalDeviceFeatures2 asked{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &f12, {}};
@@ -217,19 +217,19 @@ void Device::check_features() {
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups, {}};
   vkGetPhysicalDeviceProperties2(physical_, &properties);
   subgroup_size_ = subgroups.subgroupSize;
+  chooses_layers_ = f12.shaderOutputLayer == VK_TRUE && !thrifty;
+  numbers_triangles_ = f10.geometryShader == VK_TRUE && !thrifty;
   const bool shuffles = subgroups.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
   const struct {
     bool there;
     const char* what;
   } needed[] = {
-      {f10.geometryShader == VK_TRUE, "geometryShader (a triangle's number in the fragment shader)"},
       {f10.depthClamp == VK_TRUE, "depthClamp"},
       {f10.occlusionQueryPrecise == VK_TRUE, "occlusionQueryPrecise"},
       {f10.fragmentStoresAndAtomics == VK_TRUE, "fragmentStoresAndAtomics"},
       {f10.shaderClipDistance == VK_TRUE, "shaderClipDistance"},
       {f10.independentBlend == VK_TRUE, "independentBlend"},
       {f10.imageCubeArray == VK_TRUE, "imageCubeArray"},
-      {f12.shaderOutputLayer == VK_TRUE, "shaderOutputLayer (a layer chosen in the vertex shader)"},
       {f13.synchronization2 == VK_TRUE, "synchronization2"},
       {f13.dynamicRendering == VK_TRUE, "dynamicRendering"},
       {f13.maintenance4 == VK_TRUE, "maintenance4"},
@@ -246,7 +246,7 @@ void Device::check_features() {
          "choose another device (gnomon list devices)");
 }
 
-void Device::make_device() {
+void Device::make_device(bool thrifty) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
@@ -260,14 +260,14 @@ void Device::make_device() {
   queue.queueFamilyIndex = queue_family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  check_features();
+  check_features(thrifty);
 
   VkPhysicalDeviceVulkan12Features f12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  f12.shaderOutputLayer = VK_TRUE;
+  f12.shaderOutputLayer = chooses_layers_ ? VK_TRUE : VK_FALSE;
   VkPhysicalDeviceVulkan13Features f13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, &f12};
   f13.synchronization2 = f13.dynamicRendering = f13.maintenance4 = f13.subgroupSizeControl = VK_TRUE;
   VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &f13, {}};
-  features.features.geometryShader = VK_TRUE;  // gl_PrimitiveID in fragment shaders
+  features.features.geometryShader = numbers_triangles_ ? VK_TRUE : VK_FALSE;  // gl_PrimitiveID
   features.features.depthClamp = VK_TRUE;
   features.features.occlusionQueryPrecise = VK_TRUE;
   features.features.fragmentStoresAndAtomics = VK_TRUE;

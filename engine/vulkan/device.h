@@ -32,6 +32,10 @@ class Device {
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   uint32_t subgroup_size() const { return subgroup_size_; }  // invocations, at least 4
   const DeviceInfo& info() const { return info_; }
+  // Can a vertex shader choose the layer that it draws into? Else layers are drawn one by one.
+  bool chooses_layers() const { return chooses_layers_; }
+  // Does a fragment shader know its triangle's number?
+  bool numbers_triangles() const { return numbers_triangles_; }
   double timestamp_period_ns() const { return properties_.limits.timestampPeriod; }
   PipelineStore& pipelines() { return *pipelines_; }
 
@@ -52,8 +56,8 @@ class Device {
  private:
   void make_instance(bool validation);
   void choose_physical(const std::string& name_part);
-  void make_device();
-  void check_features();
+  void make_device(bool thrifty);
+  void check_features(bool thrifty);
   void destroy();
 
   VkInstance instance_ = VK_NULL_HANDLE;
@@ -64,6 +68,7 @@ class Device {
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
   uint32_t queue_family_ = 0, subgroup_size_ = 0;
+  bool chooses_layers_ = false, numbers_triangles_ = false;
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   DeviceInfo info_;

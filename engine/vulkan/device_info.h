@@ -16,7 +16,8 @@ struct DeviceInfo {
 struct DeviceOptions {
   std::string name_part;  // part of the device's name, any case; empty: a GPU if there is one, else lavapipe
   bool validation =
-      false;  // validation and synchronisation-validation layers; see Device::validation_messages
+      false;             // validation and synchronisation-validation layers; see Device::validation_messages
+  bool thrifty = false;  // as if the device had no feature that can be done without
 };
 std::shared_ptr<Device> open_device(const DeviceOptions& options);  // Error: no Vulkan device, no such name
 std::vector<DeviceInfo> list_devices();

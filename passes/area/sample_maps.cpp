@@ -112,6 +112,7 @@ void SampleMaps::prepare(Environment& e, bool split) {
   state.depth_clamp = true;  // what is nearer than the view's range casts its shadow all the same
   state.depth_compare = VK_COMPARE_OP_LESS;
   if (split) state.defines.emplace_back("SPLIT_MOVING", "1");
+  for (const Instance& instance : e.scene().instances) split_.push_back({{instance.moving ? 1u : 0u, 1u}});
   const bool linear = e.params().choice("encoding") == "linear";
   if (linear) {
     state.defines.emplace_back("LINEAR_DEPTH", "1");
@@ -158,22 +159,23 @@ void SampleMaps::write(const Context& c, uint32_t view, uint32_t first, std::spa
   }
 }
 
+void SampleMaps::push(Context& c, uint32_t view, uint32_t first) const {
+  constexpr uint32_t kAfterDraw = 8;  // bytes: Context::draw pushes what comes before
+  c.push(pipelines_.opaque, std::array<uint32_t, 2>{view, first}, kAfterDraw);
+}
+
 void SampleMaps::render(Context& c, uint32_t view, uint32_t first, uint32_t count, uint32_t layer) {
   Targets targets{{}, DepthTarget{"maps", 1.0f}, layer};
   targets.layers = count;
-  render(c, view, first, targets, count);
+  push(c, view, first);
+  c.render(targets, [&] { c.draw_scene(pipelines_, cull_, count); });
 }
 
 void SampleMaps::render_split(Context& c, uint32_t view, uint32_t sample) {
   Targets targets{{}, DepthTarget{"maps", 1.0f}, 0};
   targets.layers = 2;
-  render(c, view, sample, targets, 1);
-}
-
-void SampleMaps::render(Context& c, uint32_t view, uint32_t first, const Targets& targets, uint32_t count) {
-  constexpr uint32_t kAfterDraw = 8;  // bytes: Context::draw pushes what comes before
-  c.push(pipelines_.opaque, std::array<uint32_t, 2>{view, first}, kAfterDraw);
-  c.render(targets, [&] { c.draw_scene(pipelines_, cull_, count); });
+  push(c, view, sample);
+  c.render(targets, [&] { c.draw_scene(pipelines_, cull_, split_); });
 }
 
 void tell_left_out(Environment& e) {

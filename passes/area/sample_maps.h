@@ -52,8 +52,9 @@ class SampleMaps {
   void render_split(Context& c, uint32_t view, uint32_t sample);
 
  private:
-  void render(Context& c, uint32_t view, uint32_t first, const Targets& targets, uint32_t count);
+  void push(Context& c, uint32_t view, uint32_t first) const;
   ScenePipelines pipelines_;
+  InstanceLayers split_;  // of render_split()
   Cull cull_ = Cull::none;
   std::vector<LightView> widened_;  // AreaView, per view
   std::vector<double> converge_;

@@ -57,11 +57,9 @@ class GBuffer : public Pass {
  private:
   struct Channel {
     const char *port, *define;
-    VkFormat format;
   };
-  static constexpr std::array<Channel, 3> kChannels = {{{"normal", "NORMAL", VK_FORMAT_R16G16_SNORM},
-                                                        {"geometric", "GEOMETRIC", VK_FORMAT_R16G16_SNORM},
-                                                        {"albedo", "ALBEDO", VK_FORMAT_R8G8B8A8_SRGB}}};
+  static constexpr std::array<Channel, 3> kChannels = {
+      {{"normal", "NORMAL"}, {"geometric", "GEOMETRIC"}, {"albedo", "ALBEDO"}}};
 
   static constexpr const char* kUnshadowed = "unshadowed";
   static constexpr uint32_t kMostLights = 4;  // colour attachments that every device has beside the channels
@@ -85,7 +83,7 @@ class GBuffer : public Pass {
         continue;
       }
       state.defines.emplace_back(channel.define, std::to_string(channels_.size()));
-      state.colors.push_back(channel.format);
+      state.colors.push_back(e.shape(channel.port).format);
       channels_.push_back({channel.port, kNothing});
     }
     if (!e.connected(kUnshadowed)) return;

@@ -17,6 +17,9 @@ namespace gnomon {
 namespace {
 
 // Mirrors shaders/glsl/volume/planar_shadows.glsl; the instance is pushed by each draw.
+// Of a pixel; with fewer, where vertices are drawn and so their depth is less exact.
+constexpr uint32_t kSubPixelBits = 8;
+
 struct Push {
   uint32_t instance, material;  // written by Context::draw
   uint32_t light;
@@ -55,9 +58,11 @@ class PlanarShadows : public Pass {
     state.layout = VertexLayout::positions;
     state.vertex = "volume/planar_shadows.vert.glsl";
     state.fragment = "volume/planar_shadows.frag.glsl";
+    if (const uint32_t bits = e.device().limits().subPixelPrecisionBits; bits < kSubPixelBits)
+      state.defines.emplace_back("COARSER", std::to_string(1u << (kSubPixelBits - bits)));
     casters_.opaque = e.raster(state);
     state.layout = VertexLayout::masked;
-    state.defines = {{"MASKED", "1"}};
+    state.defines.emplace_back("MASKED", "1");
     casters_.masked = e.raster(state);
   }
 

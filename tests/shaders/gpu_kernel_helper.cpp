@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 
 #include "engine/vulkan/resources.h"
@@ -50,8 +51,10 @@ void expect_no_messages(const Device& device, size_t before) {
 }  // namespace
 
 std::shared_ptr<Device> kernel_device() {
+  const char* name = std::getenv("GNOMON_TEST_DEVICE");
   if (!shared().device)
-    shared().device = std::make_shared<Device>(DeviceOptions{.name_part = "llvmpipe", .validation = true});
+    shared().device = std::make_shared<Device>(
+        DeviceOptions{.name_part = name != nullptr ? name : "llvmpipe", .validation = true});
   return shared().device;
 }
 

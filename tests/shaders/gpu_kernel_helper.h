@@ -14,7 +14,8 @@
 
 namespace gnomon::test {
 
-// Lavapipe with the validation layers on: one for the test program, opened on first use.
+// Lavapipe, or the device that GNOMON_TEST_DEVICE names, with the validation layers on: one for the test
+// program, opened on first use.
 std::shared_ptr<Device> kernel_device();
 
 // A folder of this process alone, empty when first asked for, removed at the end of the program.

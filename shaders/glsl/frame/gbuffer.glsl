@@ -29,13 +29,32 @@ layout(location = ALBEDO) out vec4 out_albedo;
 layout(location = UNSHADOWED_LOCATION) out float out_unshadowed[LIGHT_COUNT];
 #endif
 
+// The way that the camera looks at the pixel; of any length.
+vec3 view_ray() {
+#ifdef ORTHOGRAPHIC_CAMERA
+  return view_axis();
+#else
+  return in_relative;
+#endif
+}
+
 // From the triangle itself, not from screen derivatives: exact at silhouettes and on slivers.
+// Some software devices have no gl_PrimitiveID, so that derivatives must do; back faces of single-sided meshes are culled:
+// all normals face the camera.
 vec3 geometric_normal() {
+#ifdef NO_PRIMITIVE_NUMBER
+  vec3 across = normalize(cross(dFdxFine(in_relative), dFdyFine(in_relative)));
+  return dot(across, view_ray()) > 0.0 ? -across : across;
+#else
   vec3 n = octahedral_decode(unpackSnorm2x16(triangle_normals[in_draw.x + gl_PrimitiveID]));
   return normalize(in_normal_columns[0].xyz * n.x + in_normal_columns[1].xyz * n.y + in_normal_columns[2].xyz * n.z);
+#endif
 }
 
 void main() {
+#ifdef NO_PRIMITIVE_NUMBER
+  vec3 geometric = geometric_normal();  // before anything is discarded: derivatives need whole quads
+#endif
 #if defined(FAR_PLANE) && defined(ORTHOGRAPHIC_CAMERA)
   if (view_depth(gl_FragCoord.z) > frame.depth.z) discard;
 #elif defined(FAR_PLANE)  // the projection's is infinitely far
@@ -49,15 +68,12 @@ void main() {
 #ifdef MASKED
   if (color.a < in_normal_columns[0].w) discard;
 #endif
+#ifndef NO_PRIMITIVE_NUMBER
   vec3 geometric = geometric_normal();
+#endif
   vec3 shading = normalize(in_normal);
   // Double-sided meshes are seen from either side: normals turn to the camera.
-#ifdef ORTHOGRAPHIC_CAMERA
-  vec3 ray = view_axis();
-#else
-  vec3 ray = in_relative;
-#endif
-  if (in_draw.y != 0u && dot(geometric, ray) > 0.0) geometric = -geometric;
+  if (in_draw.y != 0u && dot(geometric, view_ray()) > 0.0) geometric = -geometric;
   if (dot(shading, geometric) < 0.0) shading = -shading;
 #ifdef NORMAL
   out_normal = octahedral_encode(shading);

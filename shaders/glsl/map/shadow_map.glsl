@@ -12,6 +12,9 @@ layout(location = 3) in float in_alpha;
 // vertices only, and bends large triangles.
 layout(location = 1) in float in_depth;
 #endif
+#ifdef PEEL
+layout(location = 4) in flat int in_layer;
+#endif
 
 void main() {
 #ifdef MASKED
@@ -24,7 +27,7 @@ void main() {
 #endif
 #ifdef PEEL
   // Only what lies behind the first surface. First and second are the same triangles, so equality is exact.
-  if (depth <= first_at(ivec2(gl_FragCoord.xy), gl_Layer).x) discard;
+  if (depth <= first_at(ivec2(gl_FragCoord.xy), in_layer).x) discard;
 #endif
 #if defined(LINEAR_DEPTH)
   gl_FragDepth = clamp(depth, 0.0, 1.0);

@@ -1,5 +1,6 @@
 // Vertices of the scene for the views of a shadow map: one instance a view, which is also the layer.
 #include "frame/frame.glsl"
+#include "frame/layer.glsl"
 
 layout(push_constant) uniform Push { uint instance; } push;
 layout(location = 0) in vec3 in_position;
@@ -14,6 +15,9 @@ layout(location = 2) out flat uint out_instance;
 #ifdef LINEAR_DEPTH
 layout(location = 1) out float out_depth;
 #endif
+#ifdef PEEL
+layout(location = 4) out flat int out_layer;
+#endif
 
 void main() {
 #if VIEWS_COUNT == 1
@@ -23,7 +27,10 @@ void main() {
 #endif
   vec4 relative = instances[push.instance].relative_from_object * vec4(in_position, 1.0);
   gl_Position = view.clip_from_relative * vec4(relative.xyz, 1.0);
-  gl_Layer = gl_InstanceIndex;
+  choose_layer(gl_InstanceIndex);
+#ifdef PEEL
+  out_layer = gl_InstanceIndex;
+#endif
 #ifdef MASKED
   out_uv = in_uv;
   out_alpha = in_color.a;

@@ -11,7 +11,10 @@ layout(location = 1) in float in_alpha;
 layout(location = 0) out float out_visibility;
 
 const float LEAST_COSINE = 0.9999;  // between normals: octahedral 16-bit ones are exact to 1e-8
-const float DEPTH_PART = 1e-5;      // rounding of interpolated depth, as a part of it: a hundredth of a pixel
+#ifndef COARSER
+#define COARSER 1  // a device's steps within a pixel, in 1/256 of it
+#endif
+const float DEPTH_PART = 1e-5 * COARSER;  // rounding of interpolated depth, as a part of it: a hundredth of a pixel
 const float DEPTH_STEP = 2.4e-7;    // rounding of a device depth near 1, which standard z has at all distances
 
 bool on_plane(ivec2 at, float device_depth) {
