@@ -17,7 +17,7 @@ struct ViewFit;  // engine/light/light_views.cpp
 // Light::moving say so.
 class LightFit {
  public:
-  LightFit(const Scene& scene, uint32_t map_size, uint32_t border, std::optional<SeenFrom> seen = {});
+  LightFit(const Scene& scene, uint32_t map_size, uint32_t border, const std::optional<SeenFrom>& seen = {});
   LightFit(LightFit&&) noexcept;
   LightFit& operator=(LightFit&&) noexcept;
   ~LightFit();

@@ -231,7 +231,8 @@ std::vector<LightView> light_views(const Scene& scene, uint32_t map_size, uint32
   return views;
 }
 
-LightFit::LightFit(const Scene& scene, uint32_t map_size, uint32_t border, std::optional<SeenFrom> seen)
+LightFit::LightFit(const Scene& scene, uint32_t map_size, uint32_t border,
+                   const std::optional<SeenFrom>& seen)
     : map_size_(map_size),
       border_(border),
       seen_(seen),
