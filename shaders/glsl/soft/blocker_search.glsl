@@ -4,6 +4,7 @@
 // PROTOCOL_EXACT: the search begins with the region that blockers on the near plane could be in, and shrinks it to that of the
 // nearest depth in it until it no longer changes, by a min-max pyramid. All blockers of the region count, also those beside the
 // light. PROTOCOL_THESIS (ch. 5.5.1): the first of these regions, as it is, by a constant number of taps.
+#define LISTED_PIXELS
 #include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"
 #include "map/light_kernel.glsl"
