@@ -182,9 +182,11 @@ void read_basis(Declaration& d, const std::string& input) {
   const std::string basis = text_trait(d, input, map_trait::kBasis, "variance");
   const bool half = text_trait(d, input, map_trait::kPrecision, "single") == "half";
   for (ParamSpec spec : {basis_spec(), space_spec(), precision_spec(), exponent_spec(basis, half),
-                         negative_exponent_spec(half), terms_spec(), kernel_spec()})
+                         negative_exponent_spec(half), terms_spec()})
     derive(d, input, std::move(spec));
 }
+
+void read_kernel(Declaration& d, const std::string& input) { derive(d, input, kernel_spec()); }
 
 Defines moment_defines(const ImageShape& image, uint32_t views) {
   const Defines layers = {{"MOMENT_LAYERS", std::to_string(image.layers / views)}};

@@ -19,9 +19,10 @@ MomentLayout declare_basis(Declaration& d);
 // ... and, once it is declared, what the output that has them says of itself.
 void set_basis(Declaration& d, const std::string& output);
 
-// Of the pass that reads the transform: the same as derived values, and `kernel`, the width of the filter
-// that was applied (1: none). Depth that nobody transformed is refused.
+// Of the pass that reads the transform: the same as derived values. Depth that nobody transformed is refused.
 void read_basis(Declaration& d, const std::string& input);
+// `kernel` as a derived value: the width of the filter that was applied (1: none).
+void read_kernel(Declaration& d, const std::string& input);
 
 // Of a filter: `space` and `exponent` as derived values. Depth that nobody transformed is refused: its
 // average is no depth. True when averages are taken of logarithms.

@@ -45,6 +45,7 @@ class MomentTest : public Pass {
         "at its middle, where surfaces are not parallel to the light (Yang et al. 2010)");
     if (moments.mips == 1 && !soft) d.reads_around("moments", 2);
     read_basis(d, "moments");
+    read_kernel(d, "moments");
     read_table(d, "moments", soft);
     refuse_another_map(d);
     d.choice("bound", "chebyshev", {"chebyshev", "gaussian", "gaussian_cdf"},

@@ -26,7 +26,8 @@ TEST(Technique, SaysWhatItsShadowsAre) {
                                                       {"vssm", ShadowKind::soft},
                                                       {"mssm", ShadowKind::soft},
                                                       {"essm", ShadowKind::soft},
-                                                      {"cssm", ShadowKind::soft}};
+                                                      {"cssm", ShadowKind::soft},
+                                                      {"ssrbssm", ShadowKind::soft}};
   for (const auto& [name, kind] : kinds) EXPECT_EQ(shadow_kind(load_graph(find_graph(name))), kind) << name;
 }
 

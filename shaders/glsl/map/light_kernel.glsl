@@ -1,25 +1,15 @@
 // What blockers and penumbrae are in a light's map: lib/soft_shadow.glsl for the receiver of a query. After
 // map/shadow_query.glsl.
-#include "lib/light_horizon.glsl"
+#include "frame/light_size.glsl"
 #include "lib/light_shape.glsl"
 #include "lib/min_max.glsl"
 #include "lib/soft_shadow.glsl"
 
-// Half width and height of the light: world units; of a directional light, tangents.
-vec2 half_size_of(Light light) { return is_directional(light) ? vec2(light.size.w) : light.size.xy; }
-// Its larger side, by which widths of penumbrae count.
-float size_of(Light light) {
-  vec2 half_size = half_size_of(light);
-  return 2.0 * max(half_size.x, half_size.y);
-}
 // What the tangent plane of the pixel's surface hides of the light, whose shape is scaled to the square [-1, 1]^2.
 Horizon horizon_at(ivec2 pixel, LightView view, vec2 half_size) {
-  vec3 n = light_space(view, vec4(octahedral_decode(geometric_at(pixel).xy), 0.0));
-  if (is_orthographic(view)) return directional_horizon(n, half_size);
-  return horizon_of(light_space(view, vec4(relative_position(pixel, depth_at(pixel).x), 1.0)), n, half_size);
+  vec3 position = relative_position(pixel, depth_at(pixel).x), normal = octahedral_decode(geometric_at(pixel).xy);
+  return receiver_horizon(view, position, normal, half_size);
 }
-bool is_round(Light light) { return light.size.z == SHAPE_DISC || light.size.z == SHAPE_SPHERE; }
-float share_above(Horizon horizon, bool round_light) { return round_light ? disc_above(horizon) : square_above(horizon); }
 
 float linear_depth(LightView view, float encoded) {
   return ENCODING == ENCODING_LINEAR || is_orthographic(view) ? decode_linear(view, encoded) : decode_perspective(view, encoded);
@@ -51,12 +41,10 @@ vec2 half_kernel(LightView view, vec2 half_size, float size, float penumbra, flo
 
 #ifdef HAS_PYRAMID
 // Of four neighbouring invocations lavapipe reads for all the level that the first of them asks for, even where that one takes no
-// part any more: whoever works on pixels of a list, where it is chance which are neighbours, asks for levels by constants.
-#ifdef LISTED_PIXELS
+// part any more: so levels are asked for by constants.
 #define EACH_LEVEL(range_of) \
   range_of(0) range_of(1) range_of(2) range_of(3) range_of(4) range_of(5) range_of(6) range_of(7) range_of(8) range_of(9) range_of(10) \
   range_of(11) range_of(12) range_of(13)
-#endif
 const int FINER = 2;  // levels: 4 to 5 blocks on an axis, which reach beyond the texels by less than half of them
 
 // The blocks of a level of the pyramid that hold some texels.
@@ -82,27 +70,16 @@ PyramidBlocks pyramid_blocks(ivec2 low, ivec2 high, int finer) {
 vec2 pyramid_range(ivec2 low, ivec2 high, int layer) {
   PyramidBlocks blocks = pyramid_blocks(low, high, FINER);
   vec2 range = vec2(1.0, 0.0);
-#ifdef EACH_LEVEL
 #define RANGE_OF(l)                                                                                             \
   for (int y = blocks.level == l ? blocks.first.y : blocks.last.y + 1; y <= blocks.last.y; ++y)                 \
     for (int x = blocks.first.x; x <= blocks.last.x; ++x) range = min_max_join(range, pyramid_at(ivec2(x, y), layer, l).xy);
   EACH_LEVEL(RANGE_OF)
-#else
-  int y = blocks.first.y;
-  do {
-    int x = blocks.first.x;
-    do {
-      range = min_max_join(range, pyramid_at(ivec2(x, y), layer, blocks.level).xy);
-    } while (++x <= blocks.last.x);
-  } while (++y <= blocks.last.y);
-#endif
   return range;
 }
 
 // The same of four blocks, which may reach farther.
 vec2 rough_pyramid_range(ivec2 low, ivec2 high, int layer) {
   PyramidBlocks blocks = pyramid_blocks(low, high, 0);
-#ifdef EACH_LEVEL
   vec2 range = vec2(1.0, 0.0);
 #define ROUGH_RANGE_OF(l)                                                                                       \
   for (int y = blocks.level == l ? 0 : 2; y < 2; ++y)                                                           \
@@ -110,13 +87,6 @@ vec2 rough_pyramid_range(ivec2 low, ivec2 high, int layer) {
       range = min_max_join(range, pyramid_at(ivec2(x == 0 ? blocks.first.x : blocks.last.x, y == 0 ? blocks.first.y : blocks.last.y), layer, l).xy);
   EACH_LEVEL(ROUGH_RANGE_OF)
   return range;
-#else
-  vec2 left = min_max_join(pyramid_at(blocks.first, layer, blocks.level).xy,
-                           pyramid_at(ivec2(blocks.first.x, blocks.last.y), layer, blocks.level).xy);
-  vec2 right = min_max_join(pyramid_at(ivec2(blocks.last.x, blocks.first.y), layer, blocks.level).xy,
-                            pyramid_at(blocks.last, layer, blocks.level).xy);
-  return min_max_join(left, right);
-#endif
 }
 #endif
 

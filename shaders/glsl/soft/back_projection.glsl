@@ -6,7 +6,6 @@
 // wide as the one inside of it, whose taps hardly are read again; the first has a tap a texel. A tap that is nearer than the receiver's
 // plane is a patch, which reaches to the patches at its left and above where both are one surface. SILHOUETTE_REVECTORIZED: patches
 // of the first square that the shadow's silhouette passes are cut by it, as revectorization has it (3.9), at 4x4 places of each.
-#define LISTED_PIXELS
 #include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"
 #include "map/light_kernel.glsl"

@@ -1,6 +1,5 @@
 // Back-projection, first half: pixels that the min-max pyramid tells to see all of the light or nothing of it are done; the others
 // are listed.
-#define LISTED_PIXELS
 #include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"
 #include "map/light_kernel.glsl"

@@ -4,7 +4,6 @@
 // PROTOCOL_EXACT: the search begins with the region that blockers on the near plane could be in, and shrinks it to that of the
 // nearest depth in it until it no longer changes, by a min-max pyramid. All blockers of the region count, also those beside the
 // light. PROTOCOL_THESIS (ch. 5.5.1): the first of these regions, as it is, by a constant number of taps.
-#define LISTED_PIXELS
 #include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"
 #include "map/light_kernel.glsl"
@@ -20,16 +19,15 @@ vec2 blockers_in(Query query, Region region) {
   ivec2 texels = region.high - region.low + 1, last = textureSize(shadow_map, 0).xy - 1;
   ivec2 taps = min(texels, ivec2(region.all_block ? UMBRA_TAPS : params.taps));
   vec2 sum = vec2(0.0);
-  int y = 0;
-  do {
-    int x = 0;
-    do {
+  // Bounds that are the same for all invocations: with others, lavapipe's sums depend on which pixels are neighbours in the list.
+  for (int y = 0; y < params.taps; ++y)
+    for (int x = 0; x < params.taps; ++x) {
+      if (x >= taps.x || y >= taps.y) continue;
       ivec2 texel = clamp(region.low + (texels * (2 * ivec2(x, y) + 1)) / (2 * taps), ivec2(0), last);
       float plane = receiver_depth(query.view, query.plane, vec2(texel) + 0.5, ENCODING == ENCODING_LINEAR);
       float depth = map_depth(query, texel);
       if (blocks(depth, plane)) sum += vec2(linear_depth(query.view, depth), 1.0);
-    } while (++x < taps.x);
-  } while (++y < taps.y);
+    }
   return sum;
 }
 

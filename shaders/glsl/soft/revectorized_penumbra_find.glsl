@@ -1,6 +1,5 @@
 // RBSSM, first half (Macedo 2018, algorithm 5): pixels whose kernel is all lit or all in umbra by the min-max pyramid (5.4) are done;
 // those in the penumbra are listed.
-#define LISTED_PIXELS
 #include "frame/pixel_list.glsl"
 #include "map/shadow_query.glsl"
 #include "map/light_kernel.glsl"
