@@ -87,7 +87,8 @@ class CasesKept : public StabilityCases {
   static fs::path prepared(const StabilityPlace& place) {
     fs::path file = place.out / "cases.jsonl";
     std::error_code ignored;
-    if (place.overwrite) fs::remove(file, ignored);
+    if (place.overwrite)
+      fs::resize_file(file, 0, ignored);  // not removed: whenever it ends, the file is there
     return file;
   }
   nlohmann::json asked(const fs::path& graph, const std::string& what,

@@ -21,9 +21,9 @@ struct Case {
 void PrintTo(const Case& c, std::ostream* os) { *os << c.graph; }
 
 class MomentSoftShadow : public testing::TestWithParam<Case> {};
-// Variances and moments of two depths are exact, up to the least variance and the moments' bias. The other two
-// bases are blurred in depth: an exponent of 24, and 8 terms of a series, which overshoots by 9 % (Gibbs),
-// doubled.
+// Variances and moments of two depths are exact, up to the least variance and the moments' bias. The other
+// two bases are blurred in depth: an exponent of 24, and 8 terms of a series, which overshoots by 9 %
+// (Gibbs), doubled.
 INSTANTIATE_TEST_SUITE_P(All, MomentSoftShadow,
                          testing::Values(Case{"vssm", 1.0 / 64, 0.1}, Case{"mssm", 1.0 / 32, 0.15},
                                          Case{"essm", 1.0 / 16, 0.3}, Case{"cssm", 0.18, 0.6}),
