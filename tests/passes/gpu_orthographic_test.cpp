@@ -120,10 +120,12 @@ bool is_away_from_edges(const Reference& r, int x, int y) {
 // But for soft edges every technique has the reference's shadows.
 TEST_P(EveryGraphOrthographic, HasTheReferencesShadows) {
   const Graph graph = load_graph(GetParam());
+  RenderSettings roomy = small();
+  roomy.memory = uint64_t{1} << 31;  // six views of 8 terms
   for (const LightType type : {LightType::spot, LightType::directional, LightType::point}) {
     const glm::dvec3 at = type == LightType::directional ? glm::dvec3(8, 5, 0) : glm::dvec3(5, 7, 3);
     const Scene scene = seen_orthographically(square_over_plane(light(type, at)), {3, 40, 6}, {4.5, 3});
-    const auto is = hard_shadow::visibility(graph, scene, small())[0];
+    const auto is = hard_shadow::visibility(graph, scene, roomy)[0];
     const Reference r = hard_shadow::trace(scene, small());
     int lit = 0, dark = 0, wrong = 0;
     for (uint32_t y = 0; y < r.height; ++y)
