@@ -14,10 +14,12 @@ namespace {
 glm::dmat3 random_frame(Random& random, double lean) {
   glm::dvec3 z;
   do {
-    z = glm::dvec3(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1));
+    z = in_box(random, glm::dvec3(-1), glm::dvec3(1));
   } while (glm::dot(z, z) > 1.0 || glm::dot(z, z) < 0.01);
   z = glm::normalize(glm::normalize(z) + glm::dvec3(0, lean, 0) + glm::dvec3(0.01, 0, 0));
-  const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(random.in(-1, 1), random.in(-0.3, 0.3), 1.1), z));
+  const double height = random.in(-0.3, 0.3);
+  const glm::dvec3 beside(random.in(-1, 1), height, 1.1);
+  const glm::dvec3 x = glm::normalize(glm::cross(beside, z));
   return {x, glm::cross(z, x), z};
 }
 
@@ -98,20 +100,30 @@ std::string foliage() {
   Random random(2024);
   Shape ground, leaves, shrubs, cards;
   add_ground(ground, {9.5, 9.0}, 0.0, 8);
-  for (int i = 0; i < 3600; ++i)
-    add_leaf(leaves, in_crown(random), random_frame(random, 0.5), random.in(0.22, 0.38));
-  for (int i = 0; i < 700; ++i)
-    add_card(cards, in_crown(random), random_frame(random, 0.3), random.in(0.4, 0.65));
+  for (int i = 0; i < 3600; ++i) {
+    const double size = random.in(0.22, 0.38);
+    const glm::dmat3 frame = random_frame(random, 0.5);
+    add_leaf(leaves, in_crown(random), frame, size);
+  }
+  for (int i = 0; i < 700; ++i) {
+    const double size = random.in(0.4, 0.65);
+    const glm::dmat3 frame = random_frame(random, 0.3);
+    add_card(cards, in_crown(random), frame, size);
+  }
   for (const glm::dvec3& at : {glm::dvec3(-4.2, 0, 1.6), glm::dvec3(3.8, 0, 2.4), glm::dvec3(4.8, 0, -2.2),
                                glm::dvec3(-2.4, 0, 4.2)}) {
     for (int i = 0; i < 350; ++i) {
-      const glm::dmat3 frame = random_frame(random, 0.6);
-      add_leaf(shrubs, at + glm::dvec3(frame[2].x, std::abs(frame[2].y), frame[2].z) * random.in(0.2, 1.0),
-               random_frame(random, 0.4), random.in(0.2, 0.4));
+      const glm::dmat3 way = random_frame(random, 0.6);
+      const double size = random.in(0.2, 0.4);
+      const glm::dmat3 frame = random_frame(random, 0.4);
+      const glm::dvec3 upwards(way[2].x, std::abs(way[2].y), way[2].z);
+      add_leaf(shrubs, at + upwards * random.in(0.2, 1.0), frame, size);
     }
-    for (int i = 0; i < 120; ++i)
-      add_card(cards, at + glm::dvec3(random.in(-1.1, 1.1), random.in(0, 0.5), random.in(-1.1, 1.1)),
-               random_frame(random, 0.0), random.in(0.5, 0.8));
+    for (int i = 0; i < 120; ++i) {
+      const double size = random.in(0.5, 0.8);
+      const glm::dmat3 frame = random_frame(random, 0.0);
+      add_card(cards, at + in_box(random, {-1.1, 0, -1.1}, {1.1, 0.5, 1.1}), frame, size);
+    }
   }
   builder.add("ground", ground, builder.material({"ground", {0.6, 0.52, 0.38}, true, {}, {}}));
   builder.add("trunk", trunk(), builder.material({"bark", {0.3, 0.2, 0.13}, false, {}, {}}));

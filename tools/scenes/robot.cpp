@@ -54,8 +54,8 @@ std::string robot() {
   for (int i = 0; i < 26; ++i) {
     const double x = random.in(-6.5, 6.5), z = random.in(-4.5, 4.0);
     if (x * x + z * z < 5.0) continue;
-    const glm::dvec3 half(random.in(0.15, 0.5), random.in(0.15, 0.5), random.in(0.15, 0.5));
-    const glm::dvec3 axis = glm::normalize(glm::dvec3(random.in(-1, 1), random.in(0.2, 1), random.in(-1, 1)));
+    const glm::dvec3 half = in_box(random, glm::dvec3(0.15), glm::dvec3(0.5));
+    const glm::dvec3 axis = glm::normalize(in_box(random, {-1, 0.2, -1}, {1, 1, 1}));
     builder.node("crate", cubes[3], {{x, random.in(0.3, 0.7), z}, turn(random.in(0, 90), axis), half});
   }
   builder.camera({3.2, 5.6, 11.5}, {0.2, 1.9, 0.2}, 45.0, 0.1);

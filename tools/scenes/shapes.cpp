@@ -157,6 +157,11 @@ uint32_t Random::next() {
 
 double Random::in(double low, double high) { return low + (high - low) * (next() * 0x1p-32); }
 
+glm::dvec3 in_box(Random& random, const glm::dvec3& low, const glm::dvec3& high) {
+  const double z = random.in(low.z, high.z), y = random.in(low.y, high.y), x = random.in(low.x, high.x);
+  return {x, y, z};
+}
+
 glm::dmat3 turn(double angle, const glm::dvec3& axis) {
   return glm::dmat3(glm::rotate(glm::dmat4(1.0), angle / 180 * kPi, axis));
 }

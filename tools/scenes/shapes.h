@@ -20,6 +20,10 @@ class Random {
   uint64_t state_;
 };
 
+// z is drawn first, x last. Arguments of a function are evaluated in an order that compilers choose: what is
+// drawn is always named first.
+glm::dvec3 in_box(Random& random, const glm::dvec3& low, const glm::dvec3& high);
+
 glm::dmat3 turn(double angle, const glm::dvec3& axis);  // degrees
 
 void add_box(Shape& shape, const glm::dvec3& centre, const glm::dvec3& half,
