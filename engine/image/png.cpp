@@ -6,6 +6,8 @@
 #include <memory>
 
 #include "engine/base/error.h"
+#include "engine/base/input_file.h"
+#include "engine/image/png_claims.h"
 
 // Static: a shared library linked beside may carry the same symbols.
 #define STB_IMAGE_STATIC
@@ -19,9 +21,14 @@
 namespace gnomon::png {
 
 Image read(const std::filesystem::path& file) {
+  const std::string text = read_input_file(file);
+  const std::span bytes(reinterpret_cast<const uint8_t*>(text.data()), text.size());
+  if (const std::string wrong = false_claim(bytes); !wrong.empty())
+    fail("cannot read as PNG: " + wrong, file.string());
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_us, decltype(&stbi_image_free)> pixels(
-      stbi_load_16(file.c_str(), &width, &height, &channels, 0), &stbi_image_free);
+      stbi_load_16_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 0),
+      &stbi_image_free);
   if (!pixels) fail(fmt::format("cannot read as PNG: {}", stbi_failure_reason()), file.string());
   static const std::vector<std::string> names[] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
   Image image(static_cast<uint32_t>(width), static_cast<uint32_t>(height), names[channels - 1]);
