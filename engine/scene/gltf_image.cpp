@@ -49,7 +49,7 @@ std::string decode_webp(const Bytes& bytes, Texture& texture) {
 }
 
 std::string decode_stb(const Bytes& bytes, Texture& texture) {
-  if (const std::string wrong = png::false_claim(bytes); !wrong.empty()) return wrong;
+  if (std::string wrong = png::false_claim(bytes); !wrong.empty()) return wrong;
   tinygltf::Image image;
   std::string error, warning;
   if (!tinygltf::LoadImageData(&image, 0, &error, &warning, 0, 0, bytes.data(),
