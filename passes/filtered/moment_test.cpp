@@ -7,10 +7,10 @@
 #include "passes/filtered/moment_basis.h"
 #include "passes/filtered/summed_area.h"
 #include "passes/frame/pixel_list.h"
+#include "passes/map/listed_pixels.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/map_traits.h"
 #include "passes/map/receiver_ports.h"
-#include "passes/soft/listed_pixels.h"
 #include "passes/technique.h"
 
 namespace gnomon {

@@ -8,12 +8,12 @@
 #include "engine/render/render_settings.h"
 #include "engine/scene/scene.h"
 #include "passes/frame/pixel_list.h"
+#include "passes/map/listed_pixels.h"
 #include "passes/map/map_domain.h"
 #include "passes/map/map_traits.h"
 #include "passes/map/min_max_map.h"
 #include "passes/map/receiver_ports.h"
 #include "passes/soft/light_cells.h"
-#include "passes/soft/listed_pixels.h"
 #include "passes/technique.h"
 
 namespace gnomon {

@@ -5,6 +5,7 @@
 #include "engine/render/environment.h"
 #include "engine/scene/scene.h"
 #include "passes/frame/pixel_list.h"
+#include "passes/map/listed_pixels.h"
 #include "passes/map/receiver_ports.h"
 #include "passes/technique.h"
 
@@ -40,16 +41,9 @@ class Revectorize : public Pass {
   }
 
   void record(Context& c) override {
-    const ImageShape shape = c.shape("visibility");
-    for (uint32_t light = 0; light < shape.layers; ++light) {
-      if (find_.shade_shadowless(c, light)) continue;
-      if (light > 0) c.own_barrier();  // the list is used again
-      clear_pixel_list(c);
-      c.own_barrier();
-      find_.dispatch_over(c, light, {divide_up(shape.extent.width, 2), divide_up(shape.extent.height, 2)});
-      c.own_barrier();
-      walk_.dispatch_indirect(c, light, "arguments");
-    }
+    ImageShape quads = c.shape("visibility");  // an invocation looks at 2x2 pixels
+    quads.extent = {divide_up(quads.extent.width, 2), divide_up(quads.extent.height, 2)};
+    dispatch_listed(c, find_, walk_, quads);
   }
 
  private:

@@ -9,6 +9,7 @@
 #include "engine/render/environment.h"
 #include "engine/scene/scene.h"
 #include "passes/frame/pixel_list.h"
+#include "passes/map/listed_pixels.h"
 #include "passes/map/map_traits.h"
 #include "passes/map/receiver_ports.h"
 #include "passes/soft/light_weights.h"
@@ -70,18 +71,7 @@ class BackProjection : public Pass {
   }
 
   void record(Context& c) override {
-    const ImageShape shape = c.shape("visibility");
-    for (uint32_t light = 0; light < shape.layers; ++light) {
-      if (find_.shade_shadowless(c, light)) continue;
-      if (light > 0) c.own_barrier();  // the list is used again
-      clear_pixel_list(c);
-      c.own_barrier();
-      c.section("find");
-      find_.dispatch_over(c, light, shape.extent);
-      c.own_barrier();
-      c.section("hide");
-      hide_.dispatch_indirect(c, light, "arguments");
-    }
+    dispatch_listed(c, find_, hide_, c.shape("visibility"), {"find", "hide"});
   }
 
  private:

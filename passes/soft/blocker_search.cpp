@@ -1,14 +1,11 @@
 // The pass blocker_search: what hides some of each light from each camera pixel, found in the shadow map.
-#include <algorithm>
-
 #include "engine/graph/pass.h"
-#include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
-#include "passes/frame/pixel_list.h"
+#include "passes/map/listed_pixels.h"
 #include "passes/map/map_traits.h"
 #include "passes/map/receiver_ports.h"
-#include "passes/soft/listed_pixels.h"
+#include "passes/soft/blocker_ports.h"
 
 namespace gnomon {
 namespace {
@@ -33,28 +30,14 @@ class BlockerSearch : public Pass {
     else
       d.optional_input("pyramid", Access::sampled, true, pyramid);
     read_pyramid(d, "pyramid");
-    d.output(
-        "blocker", Access::storage_write, true, image,
-        "mean linear depth of what hides some of the light, from it, world units; 0: nothing does, or the "
-        "light has no size; a layer a light");
-    d.output(
-        "width", Access::storage_write, true, image,
-        "of the penumbra at the receiver, parallel to the light's larger side, world units; a layer a light");
-    declare_pixel_list(d, image.extent, "pixels that something may hide some of one light from");
+    declare_blocker(d, image);
   }
 
-  Need need(const SceneFacts& facts, const Params&) const override {
-    if (std::any_of(facts.light_size.begin(), facts.light_size.end(), [](double size) { return size > 0; }))
-      return Need::run();
-    Need none = Need::constant("blocker", 0, "no light has a size");
-    none.constants.push_back({"width", {0, 0, 0, 0}});
-    return none;
-  }
+  Need need(const SceneFacts& facts, const Params&) const override { return need_of_blocker(facts); }
 
   void prepare(Environment& e) override {
-    const PerLightOutput output{"blocker", "soft/blocker_search_none.glsl"};
-    find_.prepare(e, "soft/blocker_search_find.glsl", {}, output);
-    search_.prepare(e, "soft/blocker_search.glsl", {}, output);
+    find_.prepare(e, "soft/blocker_search_find.glsl", {}, blocker_output());
+    search_.prepare(e, "soft/blocker_search.glsl", {}, blocker_output());
     report_bias(e);
   }
   void record(Context& c) override { dispatch_listed(c, find_, search_, c.shape("blocker")); }

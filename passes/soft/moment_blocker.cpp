@@ -1,17 +1,14 @@
 // The pass moment_blocker: what hides some of each light from each camera pixel, from averages of the shadow
 // map.
-#include <algorithm>
-
 #include "engine/graph/pass.h"
-#include "engine/light/scene_facts.h"
 #include "engine/render/context.h"
 #include "engine/render/environment.h"
 #include "passes/filtered/moment_basis.h"
 #include "passes/filtered/summed_area.h"
-#include "passes/frame/pixel_list.h"
+#include "passes/map/listed_pixels.h"
 #include "passes/map/map_traits.h"
 #include "passes/map/receiver_ports.h"
-#include "passes/soft/listed_pixels.h"
+#include "passes/soft/blocker_ports.h"
 
 namespace gnomon {
 namespace {
@@ -39,31 +36,17 @@ class MomentBlocker : public Pass {
     d.number("moment_bias", 1, 0, 1000, "times what rounding asks for",
              "four_moments: how much of a fixed distribution is mixed in");
     d.number("ringing", 0, 0, 16, "1", "fourier_depth: attenuation of the highest term, as a power of e");
-    d.output(
-        "blocker", Access::storage_write, true, image,
-        "mean linear depth of what hides some of the light, from it, world units; 0: nothing does, or the "
-        "light has no size; a layer a light");
-    d.output(
-        "width", Access::storage_write, true, image,
-        "of the penumbra at the receiver, parallel to the light's larger side, world units; a layer a light");
-    declare_pixel_list(d, image.extent, "pixels that something may hide some of one light from");
+    declare_blocker(d, image);
   }
 
-  Need need(const SceneFacts& facts, const Params&) const override {
-    if (std::any_of(facts.light_size.begin(), facts.light_size.end(), [](double size) { return size > 0; }))
-      return Need::run();
-    Need none = Need::constant("blocker", 0, "no light has a size");
-    none.constants.push_back({"width", {0, 0, 0, 0}});
-    return none;
-  }
+  Need need(const SceneFacts& facts, const Params&) const override { return need_of_blocker(facts); }
 
   void prepare(Environment& e) override {
     const ImageShape moments = e.shape("moments");
     Defines defines = moment_defines(moments, e.shape("shadow_map").layers);
     for (auto& define : table_defines(moments, e.params())) defines.push_back(std::move(define));
-    const PerLightOutput output{"blocker", "soft/blocker_search_none.glsl"};
-    find_.prepare(e, "soft/blocker_search_find.glsl", {}, output);
-    search_.prepare(e, "soft/moment_blocker.glsl", defines, output);
+    find_.prepare(e, "soft/blocker_search_find.glsl", {}, blocker_output());
+    search_.prepare(e, "soft/moment_blocker.glsl", defines, blocker_output());
     report_bias(e);
   }
   void record(Context& c) override { dispatch_listed(c, find_, search_, c.shape("blocker")); }

@@ -33,7 +33,7 @@ vec2 blockers_in(Query query, Region region) {
 
 // Linear, or NO_BLOCKER. Where taps miss what the pyramid knows of, its nearest depth stands: the filter over the widest kernel
 // that there may be then tells how much is hidden.
-float find_blocker(Query query, Light light) {
+float find_blocker(ivec2 at, Query query, Light light) {
 #if PROTOCOL == PROTOCOL_EXACT
   Region region = find_region(query, light);
 #else
@@ -45,14 +45,4 @@ float find_blocker(Query query, Light light) {
   return blocker_before(query, z_b);
 }
 
-void main() {
-  ivec2 at;
-  if (!listed_pixel(list_slot(), imageSize(blocker).x, at)) return;
-  Query query;
-  make_query(at, query);
-  Light light = lights[push.light];
-  float z_b = find_blocker(kernel_query(query), light);
-  float penumbra = z_b == NO_BLOCKER ? 0.0 : penumbra_of_blocker(query.view, size_of(light), query.plane.z, z_b);
-  imageStore(blocker, ivec3(at, push.light), vec4(z_b));
-  imageStore(width, ivec3(at, push.light), vec4(penumbra));
-}
+#include "soft/listed_blocker.glsl"

@@ -41,7 +41,7 @@ vec2 occluders_in(Query query, ivec2 low, ivec2 end, float t) {
 }
 
 // Linear, or NO_BLOCKER.
-float find_blocker(Query query, Light light) {
+float find_blocker(ivec2 at, Query query, Light light) {
   Region region = find_region(query, light);
   if (!region.blocks) return NO_BLOCKER;
   ivec2 last = textureSize(shadow_map, 0).xy - 1;
@@ -58,14 +58,4 @@ float find_blocker(Query query, Light light) {
   return blocker_before(query, max(decode_linear(query.view, sum.y / sum.x), region.nearest));
 }
 
-void main() {
-  ivec2 at;
-  if (!listed_pixel(list_slot(), imageSize(blocker).x, at)) return;
-  Query query;
-  make_query(at, query);
-  Light light = lights[push.light];
-  float z_b = find_blocker(kernel_query(query), light);
-  float penumbra = z_b == NO_BLOCKER ? 0.0 : penumbra_of_blocker(query.view, size_of(light), query.plane.z, z_b);
-  imageStore(blocker, ivec3(at, push.light), vec4(z_b));
-  imageStore(width, ivec3(at, push.light), vec4(penumbra));
-}
+#include "soft/listed_blocker.glsl"

@@ -36,14 +36,4 @@ float find_blocker(ivec2 at, Query query, Light light) {
   return z_b == NO_BLOCKER ? z_b : blocker_before(query, z_b);
 }
 
-void main() {
-  ivec2 at;
-  if (!listed_pixel(list_slot(), imageSize(blocker).x, at)) return;
-  Query query;
-  make_query(at, query);
-  Light light = lights[push.light];
-  float z_b = find_blocker(at, kernel_query(query), light);
-  float penumbra = z_b == NO_BLOCKER ? 0.0 : penumbra_of_blocker(query.view, size_of(light), query.plane.z, z_b);
-  imageStore(blocker, ivec3(at, push.light), vec4(z_b));
-  imageStore(width, ivec3(at, push.light), vec4(penumbra));
-}
+#include "soft/listed_blocker.glsl"
