@@ -1,13 +1,11 @@
 // Small glTF files, each with some of what the loader reads; packed by the libraries' own encoders.
-#include <draco/compression/expert_encode.h>
-#include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
 #include <webp/encode.h>
 
 #include <memory>
 
 #include "engine/image/png.h"
-#include "tests/engine/scene/gltf_draft.h"
+#include "tests/engine/scene/gltf_packed.h"
 #include "tests/fuzz/seeds.h"
 #include "tools/scene_generate.h"
 
@@ -15,10 +13,12 @@ namespace gnomon::fuzz {
 namespace {
 
 using Json = nlohmann::json;
+using test::draco_square;
 using test::Draft;
+using test::packed_square;
+using test::packed_vertices;
 using test::raw;
 using test::square;
-using test::square_indices;
 
 const std::vector<uint8_t> kTexels = {255, 0, 0, 255, 0, 255, 0, 0, 0, 0, 255, 128, 9, 8, 7, 255};  // 2 x 2
 const std::vector<float> kCorners = {0, 0, 1, 0, 1, 1, 0, 1};  // u, v of the square's vertices
@@ -176,61 +176,13 @@ Draft accessors() {
   return draft;
 }
 
-std::string text(const std::vector<unsigned char>& bytes) { return {bytes.begin(), bytes.end()}; }
-
-// Views 0 and 1 are packed; they refer to a buffer without data.
+// With a filter where the indices are a sequence.
 Draft meshopt(const char* name, bool sequence) {
-  Draft draft;
-  const std::vector<uint32_t> indices(square_indices.begin(), square_indices.end());
-  std::vector<unsigned char> order(
-      std::max(meshopt_encodeIndexBufferBound(6, 4), meshopt_encodeIndexSequenceBound(6, 4)));
-  order.resize(sequence ? meshopt_encodeIndexSequence(order.data(), order.size(), indices.data(), 6)
-                        : meshopt_encodeIndexBuffer(order.data(), order.size(), indices.data(), 6));
+  if (!sequence) return packed_square(name);
   std::vector<float> bits = square;
-  if (sequence) meshopt_encodeFilterExp(bits.data(), 4, 12, 20, square.data());
-  std::vector<unsigned char> vertices(meshopt_encodeVertexBufferBound(4, 12));
-  vertices.resize(meshopt_encodeVertexBuffer(vertices.data(), vertices.size(), bits.data(), 4, 12));
-  const std::string packed[] = {text(vertices), text(order)};
-  draft.data.clear();
-  for (size_t i = 0; i < 2; ++i) {
-    Json& view = draft.document["bufferViews"][i];
-    view["buffer"] = 1;
-    view["extensions"][name] = {{"buffer", 0},
-                                {"byteOffset", draft.data.size()},
-                                {"byteLength", packed[i].size()},
-                                {"byteStride", i == 0 ? 12 : 2},
-                                {"count", i == 0 ? 4 : 6},
-                                {"mode", i == 0     ? "ATTRIBUTES"
-                                         : sequence ? "INDICES"
-                                                    : "TRIANGLES"}};
-    if (i == 0 && sequence) view["extensions"][name]["filter"] = "EXPONENTIAL";
-    draft.data += packed[i];
-  }
-  draft.document["buffers"] = {{{"byteLength", draft.data.size()}},
-                               {{"byteLength", 60}, {"extensions", {{name, {{"fallback", true}}}}}}};
-  draft.document["extensionsRequired"] = {name};
-  return draft;
-}
-
-Draft draco() {
-  draco::TriangleSoupMeshBuilder builder;
-  builder.Start(2);
-  const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-  const auto corner = [](size_t i) { return &square[3 * square_indices[i]]; };
-  for (uint32_t f = 0; f < 2; ++f)
-    builder.SetAttributeValuesForFace(position, draco::FaceIndex(f), corner(3 * f), corner(3 * f + 1),
-                                      corner(3 * f + 2));
-  const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
-  draco::ExpertEncoder encoder(*mesh);
-  draco::EncoderBuffer buffer;
-  encoder.EncodeToBuffer(&buffer);
-  Draft draft;
-  const size_t view = draft.add_view({buffer.data(), buffer.size()});
-  draft.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view},
-                                                                   {"attributes", {{"POSITION", 0}}}};
-  draft.document["accessors"][0].erase("bufferView");
-  draft.document["accessors"][1].erase("bufferView");
-  draft.document["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  meshopt_encodeFilterExp(bits.data(), 4, 12, 20, square.data());
+  Draft draft = packed_square(name, true, packed_vertices(bits.data(), 4, 12));
+  draft.document["bufferViews"][0]["extensions"][name]["filter"] = "EXPONENTIAL";
   return draft;
 }
 
@@ -254,7 +206,7 @@ Seeds scene_seeds() {
                {"accessors", accessors().bytes()},
                {"meshopt", meshopt("EXT_meshopt_compression", false).bytes()},
                {"meshopt_sequence", meshopt("KHR_meshopt_compression", true).bytes()},
-               {"draco", draco().bytes()},
+               {"draco", draco_square().bytes()},
                {"text", text_document()}};
   for (const char* name : {"square_plane", "area_shapes", "sun_and_lamp", "pendulum"})
     all[name] = scene_bytes(name);

@@ -4,40 +4,12 @@
 #include "engine/light/casts_beyond.h"
 #include "engine/light/light_fit.h"
 #include "engine/light/light_view.h"
-#include "tests/engine/truth/analytic_scenes.h"
+#include "tests/engine/truth/far_scenes.h"
 
 namespace gnomon {
 namespace {
 
 using namespace analytic;
-
-// A plate of 2 cm, 1 cm above the ground, seen from 10 cm.
-Scene plate_scene(LightType type) {
-  Scene scene;
-  add(scene, square(0.1f), {0, 0, 0});
-  add(scene, square(0.01f), {0, 0.01, 0});
-  scene.cameras.push_back(camera({0.05, 0.08, 0.06}, {0, 0, 0}));
-  scene.cameras[0].near = 0.001;
-  scene.lights.push_back(light(type, {0.03, 0.2, -0.02}));
-  return scene;
-}
-
-// Seen from within.
-Mesh dome(float radius) {
-  Mesh mesh = sphere(radius, 12, 24);
-  for (size_t t = 0; t < mesh.triangles(); ++t) std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
-  return mesh;
-}
-
-Mesh triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  Mesh mesh;
-  mesh.positions = {a, b, c};
-  mesh.normals.assign(3, glm::normalize(glm::cross(b - a, c - a)));
-  mesh.uvs.assign(3, glm::vec2(0));
-  mesh.indices = {0, 1, 2};
-  finish(mesh);
-  return mesh;
-}
 
 std::vector<LightView> views_of(const Scene& scene) {
   return light_views(scene, 256, 4, SeenFrom{scene.cameras[0], 1.5});
